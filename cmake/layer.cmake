@@ -1,0 +1,32 @@
+# vsgraphs_layer(NAME [LIBRARIES lib...] BELOW layer...)
+# One folder of core/ is one target. Sources are core/NAME/**/*.cpp; *_test.cpp files
+# become the test program NAME_test. BELOW lists the layers it may include.
+function(vsgraphs_layer NAME)
+  cmake_parse_arguments(LAYER "" "" "LIBRARIES;BELOW;TEST_LIBRARIES" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
+  set(tests ${sources})
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+
+  set(target vsgraphs_${NAME})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PRIVATE vsgraphs_options)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR})
+  list(TRANSFORM LAYER_BELOW PREPEND vsgraphs_)
+  target_link_libraries(${target} ${scope} ${LAYER_BELOW} ${LAYER_LIBRARIES})
+
+  if(VSGRAPHS_BUILD_TESTS AND tests)
+    find_package(GTest REQUIRED)
+    include(GoogleTest)
+    add_executable(${NAME}_test ${tests})
+    target_link_libraries(${NAME}_test PRIVATE
+      ${target} vsgraphs_options GTest::gmock GTest::gtest_main ${LAYER_TEST_LIBRARIES})
+    gtest_discover_tests(${NAME}_test DISCOVERY_TIMEOUT 60)
+  endif()
+endfunction()
