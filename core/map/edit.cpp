@@ -1,0 +1,103 @@
+#include "core/map/edit.h"
+
+#include <bit>
+
+namespace vsgraphs {
+
+namespace {
+
+class Fnv1a {
+ public:
+  void word(std::uint64_t value) {
+    for (int byte = 0; byte < 8; ++byte) {
+      hash_ = (hash_ ^ ((value >> (8 * byte)) & 0xff)) * 0x100000001b3ULL;
+    }
+  }
+  void number(double value) { word(std::bit_cast<std::uint64_t>(value)); }
+  template <typename Tag>
+  void id(const Id<Tag>& value) {
+    word((static_cast<std::uint64_t>(value.generation) << 32) | value.index);
+  }
+  template <typename Derived>
+  void matrix(const Eigen::MatrixBase<Derived>& m) {
+    for (Eigen::Index c = 0; c < m.cols(); ++c)
+      for (Eigen::Index r = 0; r < m.rows(); ++r) number(static_cast<double>(m(r, c)));
+  }
+  void pose(const Se3& pose) {
+    matrix(pose.rotation());
+    matrix(pose.translation());
+  }
+  void appearance(const Appearance& a) {
+    for (const std::uint64_t w : a.descriptor.words) word(w);
+    matrix(a.view_direction);
+    number(static_cast<double>(a.reference_distance_m));
+    word(a.reference_level);
+  }
+  std::uint64_t value() const { return hash_; }
+
+  void operator()(const AddKeyframe& op) {
+    id(op.id);
+    word(static_cast<std::uint64_t>(op.keyframe.frame_index));
+    number(op.keyframe.timestamp_s);
+    pose(op.keyframe.world_from_camera);
+    for (const Descriptor& d : op.keyframe.features->descriptors()) {
+      for (const std::uint64_t w : d.words) word(w);
+    }
+  }
+  void operator()(const RemoveKeyframe& op) {
+    id(op.id);
+    id(op.anchor);
+  }
+  void operator()(const AddLandmark& op) {
+    id(op.id);
+    matrix(op.landmark.point_in_world);
+    appearance(op.landmark.appearance);
+  }
+  void operator()(const RemoveLandmark& op) { id(op.id); }
+  void operator()(const MergeLandmark& op) {
+    id(op.id);
+    id(op.into);
+  }
+  void operator()(const AddObservation& op) {
+    id(op.landmark);
+    id(op.observation.keyframe);
+    word(op.observation.feature);
+  }
+  void operator()(const RemoveObservation& op) {
+    id(op.landmark);
+    id(op.keyframe);
+  }
+  void operator()(const MoveKeyframe& op) {
+    id(op.id);
+    pose(op.world_from_camera);
+  }
+  void operator()(const MoveLandmark& op) {
+    id(op.id);
+    matrix(op.point_in_world);
+  }
+  void operator()(const SetAppearance& op) {
+    id(op.id);
+    appearance(op.appearance);
+  }
+  void operator()(const CountSightings& op) {
+    id(op.id);
+    word((static_cast<std::uint64_t>(op.visible) << 32) | op.found);
+  }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace
+
+std::uint64_t MapEdit::hash() const {
+  Fnv1a hash;
+  hash.word(based_on);
+  for (const EditOperation& operation : operations) {
+    hash.word(operation.index());
+    std::visit(hash, operation);
+  }
+  return hash.value();
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,75 @@
+// Edits: what a stage wants done to the map, as data. A stage works on a private `Draft`, which records every
+// operation it does; the owner repeats them on the one map. Edits can be hashed, so two runs can be compared.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/map/keyframe.h"
+#include "core/map/landmark.h"
+
+namespace vsgraphs {
+
+struct AddKeyframe {
+  KeyframeId id;
+  Keyframe keyframe;  // without landmarks: observations are operations of their own
+};
+// The keyframe's observations go with it; frames anchored to it hang on `anchor` from now on.
+struct RemoveKeyframe {
+  KeyframeId id;
+  KeyframeId anchor;
+};
+struct AddLandmark {
+  LandmarkId id;
+  Landmark landmark;  // without observations
+};
+struct RemoveLandmark {
+  LandmarkId id;
+};
+// `id`'s observations go to `into` (where a keyframe has both, `into` keeps its own); `id` redirects to `into`.
+struct MergeLandmark {
+  LandmarkId id;
+  LandmarkId into;
+};
+// Does nothing if the feature is taken or the keyframe observes the landmark already.
+struct AddObservation {
+  LandmarkId landmark;
+  Observation observation;
+};
+struct RemoveObservation {
+  LandmarkId landmark;
+  KeyframeId keyframe;
+};
+struct MoveKeyframe {
+  KeyframeId id;
+  Se3 world_from_camera;
+};
+struct MoveLandmark {
+  LandmarkId id;
+  Eigen::Vector3d point_in_world;
+};
+struct SetAppearance {
+  LandmarkId id;
+  Appearance appearance;
+};
+struct CountSightings {
+  LandmarkId id;
+  std::uint32_t visible = 0;
+  std::uint32_t found = 0;
+};
+
+using EditOperation =
+    std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
+                 RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings>;
+
+struct MapEdit {
+  std::uint64_t based_on = 0;  // version of the snapshot it was worked out on
+  std::vector<EditOperation> operations;
+
+  // Equal for equal edits, on every run of the same binary (FNV-1a over the values, floating point by bits).
+  std::uint64_t hash() const;
+};
+
+}  // namespace vsgraphs

@@ -1,0 +1,33 @@
+// A keyframe: a frame kept for good, its pose a variable of the factor graph.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/geometry/se3.h"
+#include "core/map/features.h"
+#include "core/map/ids.h"
+
+namespace vsgraphs {
+
+struct Keyframe {
+  std::int64_t frame_index = 0;
+  double timestamp_s = 0;
+  Se3 world_from_camera;
+  std::shared_ptr<const FeatureSet> features;  // never changes; shared with every snapshot
+  std::vector<LandmarkId> landmarks;           // per feature; invalid where none
+};
+
+// What is left of a keyframe that was culled: where it stood, seen from a keyframe that stayed.
+struct RetiredKeyframe {
+  KeyframeId anchor;
+  Se3 anchor_from_camera;
+};
+
+// A camera pose tied to a keyframe, so that corrections of the keyframe move it for free.
+struct AnchoredPose {
+  KeyframeId keyframe;
+  Se3 keyframe_from_camera;
+};
+
+}  // namespace vsgraphs

@@ -1,0 +1,67 @@
+// The map: values in tables, and nothing that has no place in a saved file. One owner writes it, through
+// `apply` alone; everybody else holds a `Snapshot`. Copying a map shares its storage (see table.h).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/map/edit.h"
+#include "core/map/keyframe.h"
+#include "core/map/landmark.h"
+#include "core/map/table.h"
+
+namespace vsgraphs {
+
+class Map;
+using Snapshot = std::shared_ptr<const Map>;
+
+class Map {
+ public:
+  // Small chunks for heavy values, large chunks for light ones: a copy-on-write clones a whole chunk.
+  using Keyframes = Table<KeyframeId, Keyframe, 8, false>;
+  using Landmarks = Table<LandmarkId, Landmark, 64>;
+
+  const Keyframes& keyframes() const { return keyframes_; }
+  const Landmarks& landmarks() const { return landmarks_; }
+  std::uint64_t version() const { return version_; }
+
+  // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
+  std::optional<Se3> resolve(const AnchoredPose& pose) const;
+  // The living keyframe that stands for `pose`'s anchor now, and the pose relative to it.
+  std::optional<AnchoredPose> reanchor(AnchoredPose pose) const;
+
+  // Keyframes that share at least `min_shared` landmarks with `id`, most shared first (ties: lower id first).
+  // Cost: one visit per observation of the keyframe's landmarks.
+  std::vector<std::pair<KeyframeId, int>> covisible(KeyframeId id, int min_shared) const;
+
+  // Does one operation. What refers to ids that have vanished since does nothing.
+  void apply(const EditOperation& operation);
+  // Does all of an edit's operations in order and counts one version up.
+  void apply(const MapEdit& edit);
+
+  // A copy that nobody writes; the map goes on in fresh chunks. Only the owner may call this.
+  Snapshot snapshot();
+
+ private:
+  void apply_one(const AddKeyframe& op);
+  void apply_one(const RemoveKeyframe& op);
+  void apply_one(const AddLandmark& op);
+  void apply_one(const RemoveLandmark& op);
+  void apply_one(const MergeLandmark& op);
+  void apply_one(const AddObservation& op);
+  void apply_one(const RemoveObservation& op);
+  void apply_one(const MoveKeyframe& op);
+  void apply_one(const MoveLandmark& op);
+  void apply_one(const SetAppearance& op);
+  void apply_one(const CountSightings& op);
+  void detach(LandmarkId landmark, const Observation& observation);
+
+  Keyframes keyframes_;
+  Landmarks landmarks_;
+  Table<KeyframeId, RetiredKeyframe, 32, false> retired_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace vsgraphs

@@ -1,0 +1,145 @@
+// The only container of the map: values by generational id, iterated in id order, with copy-on-write chunks so
+// that a copy costs one pointer per chunk and shares everything that has not changed since.
+//
+// Who may write: the one owner of a table, and whoever holds a private copy of it. A chunk is written in place
+// only if it was made in the table's present epoch; `seal()` starts the next one and is called by the owner each
+// time it has handed out a copy. No reference counts are read, so there is nothing to race on.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "core/base/check.h"
+#include "core/map/ids.h"
+
+namespace vsgraphs {
+
+// `reuse_slots` is off where removed ids must stay answerable for ever (keyframes: frames hang on them).
+template <typename IdType, typename Value, std::uint32_t chunk_size, bool reuse_slots = true>
+class Table {
+ public:
+  Table() = default;
+  Table(const Table& other)
+      : chunks_(other.chunks_), free_(other.free_), slots_(other.slots_), size_(other.size_), epoch_(other.epoch_ + 1) {}
+  Table& operator=(const Table& other) {
+    Table copy(other);
+    std::swap(*this, copy);
+    return *this;
+  }
+  Table(Table&&) noexcept = default;
+  Table& operator=(Table&&) noexcept = default;
+  ~Table() = default;
+
+  // After this, chunks that copies share are no longer written in place.
+  void seal() { ++epoch_; }
+
+  std::uint32_t size() const { return size_; }
+
+  // nullptr where the id is stale or was never given out.
+  const Value* find(IdType id) const {
+    const Slot* slot = slot_of(id.index);
+    return slot && slot->alive && slot->generation == id.generation ? &slot->value : nullptr;
+  }
+  bool contains(IdType id) const { return find(id) != nullptr; }
+
+  // Follows what a removed id was merged into; an invalid id where it vanished for good. The trail is kept until
+  // the slot is used again, which the first-in-first-out free list delays for as long as it can.
+  IdType resolve(IdType id) const {
+    for (int hops = 0; hops < 16; ++hops) {
+      const Slot* slot = slot_of(id.index);
+      if (!slot) return {};
+      if (slot->alive) return slot->generation == id.generation ? id : IdType{};
+      if (slot->generation != id.generation || !slot->redirect.valid()) return {};
+      id = slot->redirect;
+    }
+    return {};
+  }
+
+  // The id the next insert will get if nothing else happens in between.
+  IdType next_id() const {
+    if (free_.empty()) return {slots_, 0};
+    return {free_.front(), slot_of(free_.front())->generation + 1};
+  }
+
+  // Puts a value at an id obtained from next_id() of this table or of a copy that has seen the same history of
+  // inserts (removals in between are fine).
+  void insert_at(IdType id, Value value) {
+    VSG_INVARIANT(id.valid() && id.index <= slots_);
+    if (id.index == slots_) {
+      if (slots_ % chunk_size == 0) chunks_.push_back(std::make_shared<Chunk>(epoch_));
+      ++slots_;
+    } else {
+      auto position = free_.begin();
+      while (position != free_.end() && *position != id.index) ++position;
+      VSG_INVARIANT(position != free_.end());
+      free_.erase(position);
+    }
+    Slot& slot = writable(id.index);
+    VSG_INVARIANT(!slot.alive);
+    slot.alive = true;
+    slot.generation = id.generation;
+    slot.redirect = {};
+    slot.value = std::move(value);
+    ++size_;
+  }
+
+  // nullptr like find(); the value may be changed through the pointer until the next call that copies the table.
+  Value* edit(IdType id) { return contains(id) ? &writable(id.index).value : nullptr; }
+
+  void erase(IdType id, IdType redirect = {}) {
+    if (!contains(id)) return;
+    Slot& slot = writable(id.index);
+    slot.alive = false;
+    slot.redirect = redirect;
+    slot.value = Value{};
+    if constexpr (reuse_slots) free_.push_back(id.index);
+    --size_;
+  }
+
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (std::uint32_t index = 0; index < slots_; ++index) {
+      const Slot& slot = *slot_of(index);
+      if (slot.alive) visit(IdType{index, slot.generation}, slot.value);
+    }
+  }
+
+  // One more than the largest index in use: the length of an array indexed by id.index.
+  std::uint32_t index_bound() const { return slots_; }
+
+ private:
+  struct Slot {
+    Value value{};
+    IdType redirect{};
+    std::uint32_t generation = 0;
+    bool alive = false;
+  };
+  struct Chunk {
+    explicit Chunk(std::uint64_t e) : epoch(e) {}
+    std::uint64_t epoch;
+    std::array<Slot, chunk_size> slots{};
+  };
+
+  const Slot* slot_of(std::uint32_t index) const {
+    if (index >= slots_) return nullptr;
+    return &chunks_[index / chunk_size]->slots[index % chunk_size];
+  }
+  Slot& writable(std::uint32_t index) {
+    std::shared_ptr<Chunk>& chunk = chunks_[index / chunk_size];
+    if (chunk->epoch != epoch_) {
+      chunk = std::make_shared<Chunk>(*chunk);
+      chunk->epoch = epoch_;
+    }
+    return chunk->slots[index % chunk_size];
+  }
+
+  std::vector<std::shared_ptr<Chunk>> chunks_;
+  std::deque<std::uint32_t> free_;
+  std::uint32_t slots_ = 0;
+  std::uint32_t size_ = 0;
+  std::uint64_t epoch_ = 0;
+};
+
+}  // namespace vsgraphs
