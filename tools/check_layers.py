@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+"""Fails on any include or import that leaves the architecture, and on words the core does without.
+
+The floors of the core are read from core/CMakeLists.txt (`vsgraphs_layer(NAME ... BELOW ...)`), those of the
+Python package from pyproject.toml (see python_layers.py): each is written down once.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import python_layers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+CLOCKS_AND_THREADS = (
+    r"^(atomic|barrier|chrono|condition_variable|ctime|future|latch|mutex|pthread\.h|semaphore|shared_mutex|"
+    r"stop_token|sys/time\.h|thread|time\.h)$"
+)
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What `pattern` matches may stand only in the core folders `allowed`, and in tests where `in_tests`."""
+
+    pattern: re.Pattern[str]
+    allowed: frozenset[str]
+    in_tests: bool
+    reason: str
+
+    def forbids(self, text: str, folder: str, *, is_test: bool) -> bool:
+        """Says whether `text`, found in core/`folder`, breaks this rule."""
+        return (
+            self.pattern.search(text) is not None
+            and folder not in self.allowed
+            and not (is_test and self.in_tests)
+        )
+
+
+def _rule(pattern: str, allowed: str, reason: str, *, in_tests: bool) -> Rule:
+    return Rule(re.compile(pattern), frozenset(allowed.split()), in_tests, reason)
+
+
+INCLUDE_RULES = (
+    _rule(
+        r"^(unsupported/)?Eigen/(?!Core$|Geometry$|StdVector$)", "solve geometry",
+        "Eigen's solvers stay in core/solve and core/geometry", in_tests=False,
+    ),
+    _rule(r"^opencv2/", "vision", "OpenCV stays behind core/vision", in_tests=False),
+    _rule(r"^(ceres|glog)/", "", "Ceres is an oracle for tests, never shipped", in_tests=True),
+    _rule(
+        CLOCKS_AND_THREADS, "system base",
+        "clocks and threads stay in core/system and core/base", in_tests=True,
+    ),
+    _rule(r"^random$", "base", "random numbers come from core/base/rng.h", in_tests=True),
+    _rule(r"^(iostream|cstdio|stdio\.h)$", "", "the core prints nothing: use the log sink", in_tests=True),
+)  # fmt: skip
+
+# A member function of such a name (x.exit(), Queue::abort()) is none of these.
+_FREE = r"(?<![\w.>:])(?:std::|::)?"
+WORD_RULES = (
+    _rule(
+        _FREE + r"(?:(?:f|v|vf)?printf|f?puts|putchar)\s*\(|std::(?:cout|cerr|clog)\b", "",
+        "the core prints nothing: use the log sink", in_tests=True,
+    ),
+    _rule(
+        _FREE + r"(?:_?exit|_Exit|quick_exit|abort|terminate)\s*\(", "",
+        "the core throws, it never exits", in_tests=True,
+    ),
+    _rule(_FREE + r"s?rand\s*\(", "", "random numbers come from core/base/rng.h", in_tests=False),
+    _rule(r"\bthread_local\b", "system base", "threads stay in core/system and core/base", in_tests=False),
+    _rule(
+        r"\bnew\b\s*[\w:(]|\bdelete\b\s*(?:\[\s*\])?\s*[\w(*]", "",
+        "no naked new or delete", in_tests=False,
+    ),
+)  # fmt: skip
+
+VAGUE_NAMES = {"util", "utils", "common", "helper", "helpers", "manager", "misc"}
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One folder of core/: the folders it may include, and those its tests may include besides."""
+
+    below: frozenset[str]
+    for_tests: frozenset[str]
+
+
+def read_layers(cmake: str) -> dict[str, Layer]:
+    """Reads the floors of the core from the text of core/CMakeLists.txt."""
+    text = re.sub(r"#.*", "", cmake)
+    layers: dict[str, Layer] = {}
+    for arguments in re.findall(r"vsgraphs_layer\(([^)]*)\)", text):
+        name, *words = arguments.split()
+        lists: dict[str, list[str]] = {}
+        keyword = ""
+        for word in words:
+            if word.isupper():
+                keyword = word
+            else:
+                lists.setdefault(keyword, []).append(word)
+        tests = [word.removeprefix("vsgraphs_") for word in lists.get("TEST_LIBRARIES", [])]
+        layers[name] = Layer(frozenset(lists.get("BELOW", [])), frozenset(tests))
+    return layers
+
+
+def cycle(layers: dict[str, Layer]) -> str | None:
+    """Names a folder that may include itself through others, if there is one."""
+    for start, layer in layers.items():
+        reached: set[str] = set()
+        waiting = list(layer.below)
+        while waiting:
+            name = waiting.pop()
+            if name == start:
+                return start
+            if name not in reached:
+                reached.add(name)
+                waiting.extend(layers[name].below if name in layers else ())
+    return None
+
+
+_CODE_OR_NOISE = re.compile(
+    r'//[^\n]*|/\*.*?\*/|R"(?P<tag>[^(\s]*)\(.*?\)(?P=tag)"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'',
+    re.DOTALL,
+)
+
+
+def without_noise(text: str) -> str:
+    """Blanks comments and literals, keeping the lines; text behind #include stays."""
+
+    def blank(match: re.Match[str]) -> str:
+        line_start = text.rfind("\n", 0, match.start()) + 1
+        if text[line_start : match.start()].lstrip().startswith("#include") and match[0][0] == '"':
+            return match[0]
+        return "\n" * match[0].count("\n")
+
+    return _CODE_OR_NOISE.sub(blank, text)
+
+
+def _include_problems(folder: str, layer: Layer, included: str, *, is_test: bool) -> Iterator[str]:
+    top, _, rest = included.partition("/")
+    if top != "core":
+        for rule in INCLUDE_RULES:
+            if rule.forbids(included, folder, is_test=is_test):
+                yield f"includes <{included}>: {rule.reason}"
+        return
+    target = rest.partition("/")[0]
+    allowed = layer.below | {folder} | (layer.for_tests if is_test else frozenset())
+    if target not in allowed:
+        yield f"core/{folder} includes {included}, but may include only {', '.join(sorted(allowed))}"
+
+
+def check_cpp(root: Path) -> list[str]:
+    """Checks core/ and bindings/ below `root`; returns one line `path:line: problem` for each finding."""
+    layers = read_layers((root / "core/CMakeLists.txt").read_text())
+    problems = []
+    if (culprit := cycle(layers)) is not None:
+        problems.append(f"core/CMakeLists.txt: {culprit} stands below itself")
+    problems += [
+        f"core/{entry.name}: not declared with vsgraphs_layer() in core/CMakeLists.txt"
+        for entry in sorted((root / "core").iterdir())
+        if entry.is_dir() and entry.name not in layers
+    ]
+    for path in sorted(root.glob("core/*/**/*")) + sorted(root.glob("bindings/**/*")):
+        if path.suffix not in {".h", ".cpp"}:
+            continue
+        name = path.relative_to(root)
+        if VAGUE_NAMES & set(re.split(r"[_/.]", str(name))):
+            problems.append(f"{name}: name it after what it holds")
+        for number, line in enumerate(without_noise(path.read_text()).splitlines(), 1):
+            problems += [f"{name}:{number}: {problem}" for problem in _line_problems(layers, name, line)]
+    return problems
+
+
+def _line_problems(layers: dict[str, Layer], name: Path, line: str) -> Iterator[str]:
+    is_test = name.stem.endswith("_test")
+    in_core = name.parts[0] == "core"
+    include = re.match(r'\s*#\s*include\s*(["<])([^">]+)[">]', line)
+    if include:
+        quote, included = include.groups()
+        if quote == '"' and included.split("/")[0] not in {"core", "bindings"}:
+            yield f'includes "{included}": write the path from the project\'s root'
+        elif not in_core:
+            if included.startswith("opencv2/"):
+                yield f"includes <{included}>: OpenCV stays behind core/vision"
+        elif included.startswith("bindings/"):
+            yield f"includes {included}: the core knows nothing of Python"
+        elif name.parts[1] in layers:
+            yield from _include_problems(name.parts[1], layers[name.parts[1]], included, is_test=is_test)
+    elif in_core:
+        for rule in WORD_RULES:
+            if rule.forbids(line, name.parts[1], is_test=is_test):
+                yield rule.reason
+
+
+def main() -> int:
+    """Checks the checkout this file belongs to."""
+    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
+    problems = check_cpp(root) + python_layers.check(root)
+    for problem in problems:
+        print(problem)
+    print(f"layer check: {len(problems)} violations")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
