@@ -44,6 +44,12 @@ class Table {
   }
   bool contains(IdType id) const { return find(id) != nullptr; }
 
+  // The id living at an index, or an invalid one.
+  IdType at_index(std::uint32_t index) const {
+    const Slot* slot = slot_of(index);
+    return slot && slot->alive ? IdType{index, slot->generation} : IdType{};
+  }
+
   // Follows what a removed id was merged into; an invalid id where it vanished for good. The trail is kept until
   // the slot is used again, which the first-in-first-out free list delays for as long as it can.
   IdType resolve(IdType id) const {

@@ -1,0 +1,143 @@
+#include "core/solve/window.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace vsgraphs {
+
+namespace {
+
+// Position of each window member in a dense array by id index; -1 where it is not a member.
+template <typename IdType>
+std::vector<int> positions(const std::vector<IdType>& members, std::uint32_t bound) {
+  std::vector<int> position(bound, -1);
+  for (std::size_t i = 0; i < members.size(); ++i) position[members[i].index] = static_cast<int>(i);
+  return position;
+}
+
+void gather_landmarks(const Map& map, Window& window) {
+  std::vector<std::uint8_t> seen(map.landmarks().index_bound(), 0);
+  for (const KeyframeId id : window.free) {
+    for (const LandmarkId landmark : map.keyframes().find(id)->landmarks) {
+      if (!landmark.valid() || seen[landmark.index]) continue;
+      seen[landmark.index] = 1;
+      const auto& observations = map.landmarks().find(landmark)->observations;
+      (observations.size() >= 2 ? window.landmarks : window.passengers).push_back(landmark);
+    }
+  }
+}
+
+// Witnesses: keyframes outside the window that see its landmarks, the most closely tied first.
+void gather_fixed(const Map& map, Window& window, int max_fixed) {
+  const std::vector<int> free = positions(window.free, map.keyframes().index_bound());
+  std::vector<int> shared(map.keyframes().index_bound(), 0);
+  std::vector<KeyframeId> witnesses;
+  for (const LandmarkId landmark : window.landmarks) {
+    for (const Observation& o : map.landmarks().find(landmark)->observations) {
+      if (free[o.keyframe.index] < 0 && shared[o.keyframe.index]++ == 0) witnesses.push_back(o.keyframe);
+    }
+  }
+  std::sort(witnesses.begin(), witnesses.end(), [&shared](KeyframeId a, KeyframeId b) {
+    return shared[a.index] != shared[b.index] ? shared[a.index] > shared[b.index] : a < b;
+  });
+  if (witnesses.size() > static_cast<std::size_t>(max_fixed)) witnesses.resize(static_cast<std::size_t>(max_fixed));
+  window.fixed = std::move(witnesses);
+}
+
+ReprojectionObservation measure(const MeasurementModel& model, const Feature& feature, int pose, int landmark) {
+  ReprojectionObservation o;
+  o.pose = pose;
+  o.landmark = landmark;
+  o.u = feature.u;
+  o.v = feature.v;
+  o.inv_sigma_px = static_cast<float>(1.0 / (model.sigma_px * std::pow(model.scale_factor, feature.level)));
+  if (feature.has_depth()) {
+    o.inverse_depth = 1.0f / feature.depth_m;
+    o.inv_sigma_inverse_depth =
+        static_cast<float>(inv_sigma_of_inverse_depth(model.camera.depth_noise, feature.depth_m));
+  }
+  return o;
+}
+
+void build_landmark_factors(const Map& map, const Window& window, const MeasurementModel& model,
+                            WindowProblem& problem) {
+  const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
+  for (const LandmarkId id : window.landmarks) {
+    const Landmark& landmark = *map.landmarks().find(id);
+    const int index = static_cast<int>(problem.bundle.landmarks.size());
+    problem.bundle.landmarks.push_back(landmark.point_in_world);
+    problem.landmark_of_point.push_back(id);
+    for (const Observation& o : landmark.observations) {
+      const int pose = pose_of[o.keyframe.index];
+      if (pose < 0) continue;
+      const Feature& feature = (*map.keyframes().find(o.keyframe)->features)[o.feature];
+      problem.bundle.observations.push_back(measure(model, feature, pose, index));
+    }
+  }
+}
+
+using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
+constexpr std::array<FactorBuilder, 1> factor_builders = {build_landmark_factors};
+
+}  // namespace
+
+Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fixed) {
+  Window window;
+  window.free.push_back(centre);
+  constexpr int min_shared = 15;
+  for (const auto& [id, shared] : map.covisible(centre, min_shared)) {
+    if (static_cast<int>(window.free.size()) >= max_free) break;
+    window.free.push_back(id);
+  }
+  gather_landmarks(map, window);
+  gather_fixed(map, window, max_fixed);
+  if (window.fixed.empty()) {
+    const auto oldest = std::min_element(window.free.begin(), window.free.end());
+    window.fixed.push_back(*oldest);
+    window.free.erase(oldest);
+  }
+  return window;
+}
+
+WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+  WindowProblem problem;
+  problem.bundle.intrinsics = Intrinsics::of(model.camera);
+  for (const auto* members : {&window.free, &window.fixed}) {
+    for (const KeyframeId id : *members) {
+      problem.keyframe_of_pose.push_back(id);
+      problem.bundle.poses.push_back(map.keyframes().find(id)->world_from_camera);
+      problem.bundle.pose_fixed.push_back(members == &window.fixed);
+    }
+  }
+  for (const FactorBuilder builder : factor_builders) builder(map, window, model, problem);
+  return problem;
+}
+
+void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report, Draft& draft) {
+  const BundleProblem& bundle = problem.bundle;
+  for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
+    if (is_inlier(report.fit[i])) continue;
+    const ReprojectionObservation& o = bundle.observations[i];
+    draft.record(RemoveObservation{problem.landmark_of_point[static_cast<std::size_t>(o.landmark)],
+                                   problem.keyframe_of_pose[static_cast<std::size_t>(o.pose)]});
+  }
+  for (const LandmarkId id : window.passengers) {
+    const Landmark* landmark = draft.map().landmarks().find(id);
+    if (!landmark || landmark->observations.empty()) continue;
+    const KeyframeId carrier = landmark->observations.front().keyframe;
+    const auto pose = std::find(problem.keyframe_of_pose.begin(), problem.keyframe_of_pose.end(), carrier);
+    if (pose == problem.keyframe_of_pose.end()) continue;
+    const Se3& before = draft.map().keyframes().find(carrier)->world_from_camera;
+    const Se3& after = bundle.poses[static_cast<std::size_t>(pose - problem.keyframe_of_pose.begin())];
+    draft.record(MoveLandmark{id, after * (before.inverse() * landmark->point_in_world)});
+  }
+  for (std::size_t i = 0; i < bundle.poses.size(); ++i) {
+    if (!bundle.pose_fixed[i]) draft.record(MoveKeyframe{problem.keyframe_of_pose[i], bundle.poses[i]});
+  }
+  for (std::size_t i = 0; i < bundle.landmarks.size(); ++i) {
+    draft.record(MoveLandmark{problem.landmark_of_point[i], bundle.landmarks[i]});
+  }
+}
+
+}  // namespace vsgraphs

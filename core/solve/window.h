@@ -1,0 +1,46 @@
+// Which part of the map one local adjustment improves, as data; and the two ways between map and problem.
+// Window: Mur-Artal, Montiel, Tardos, T-RO 2015, section VI-D (covisible keyframes free, their witnesses fixed).
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/map/draft.h"
+#include "core/map/map.h"
+#include "core/solve/bundle_adjustment.h"
+
+namespace vsgraphs {
+
+struct Window {
+  std::vector<KeyframeId> free;         // poses to improve
+  std::vector<KeyframeId> fixed;        // poses that hold the rest in place
+  std::vector<LandmarkId> landmarks;    // seen by at least two keyframes of the window
+  std::vector<LandmarkId> passengers;   // seen by one free keyframe alone: they move with it
+};
+
+// The keyframes covisible with `centre` (most shared landmarks first), up to the given numbers. Without any
+// outer keyframe the oldest of the window is fixed. Deterministic; cost linear in the window's observations.
+Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fixed);
+
+// How reliable a measurement is, by the pyramid level it was made at and the sensor's noise.
+struct MeasurementModel {
+  Camera camera;
+  double scale_factor = 1.2;  // of the pyramid
+  double sigma_px = 1.0;      // at level 0
+};
+
+// The window as an optimisation problem, with the way back.
+struct WindowProblem {
+  BundleProblem bundle;
+  std::vector<KeyframeId> keyframe_of_pose;
+  std::vector<LandmarkId> landmark_of_point;
+};
+
+// Walks the table of factor builders: landmarks now; planes, rooms, floors and markers as they come.
+WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);
+
+// Records the solution in `draft`: moved poses, landmarks and passengers, and removes the observations that
+// `report` calls outliers.
+void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report, Draft& draft);
+
+}  // namespace vsgraphs

@@ -1,0 +1,51 @@
+// Taking out what does not earn its place: landmarks that are not found again and keyframes that show nothing new.
+// Rules after ORB-SLAM (Mur-Artal, Montiel, Tardos, T-RO 2015, sections VI-B and VI-E).
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "core/base/options.h"
+#include "core/map/draft.h"
+
+namespace vsgraphs {
+
+struct CullingOptions {
+  double min_found_share = 0.25;
+  int probation_keyframes = 3;
+  int min_observations = 3;
+  double redundant_share = 0.9;
+  int redundant_witnesses = 3;
+};
+
+template <typename Visitor>
+void describe(CullingOptions& o, Visitor& field) {
+  field("min_found_share", o.min_found_share, 0.0, 1.0,
+        "a young landmark found in less than this share of the frames that should show it is removed");
+  field("probation_keyframes", o.probation_keyframes, 1, 20, "keyframes during which a landmark is young");
+  field("min_observations", o.min_observations, 1, 10,
+        "keyframes that must have observed a landmark when its probation ends");
+  field("redundant_share", o.redundant_share, 0.5, 1.0,
+        "a keyframe is removed if this share of its landmarks is seen as well by enough others");
+  field("redundant_witnesses", o.redundant_witnesses, 1, 10, "how many others are enough");
+}
+
+// Landmarks on probation, with the number of keyframes made since their birth.
+class Probation {
+ public:
+  void admit(const std::vector<LandmarkId>& landmarks, std::int64_t keyframe_count);
+  // Removes those that failed, releases those that passed.
+  void judge(const CullingOptions& options, std::int64_t keyframe_count, Draft& draft);
+
+ private:
+  struct Entry {
+    LandmarkId landmark;
+    std::int64_t born;  // keyframe count
+  };
+  std::deque<Entry> entries_;
+};
+
+// Removes the redundant keyframes among `candidates`; never the map's first.
+void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>& candidates, Draft& draft);
+
+}  // namespace vsgraphs

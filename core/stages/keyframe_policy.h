@@ -1,0 +1,45 @@
+// When a frame is worth keeping: the map around the camera is thinning out, or depth sees much the map lacks.
+// Rules after ORB-SLAM2 (Mur-Artal, Tardos, T-RO 2017, section III-E), with the mapper's backlog as an input.
+#pragma once
+
+#include "core/base/options.h"
+
+namespace vsgraphs {
+
+struct KeyframePolicyOptions {
+  double min_tracked_share = 0.75;
+  double min_translation_m = 0.02;
+  double min_rotation_rad = 0.035;
+  double max_interval_s = 1.0;
+  int few_close_points = 100;
+  int many_new_close_points = 70;
+};
+
+template <typename Visitor>
+void describe(KeyframePolicyOptions& o, Visitor& field) {
+  field("min_tracked_share", o.min_tracked_share, 0.1, 1.0,
+        "a keyframe is made when less than this share of the reference keyframe's landmarks is tracked");
+  field("min_translation_m", o.min_translation_m, 0.0, 1.0,
+        "no keyframe nearer to the last one than this, unless turned by min_rotation_rad");
+  field("min_rotation_rad", o.min_rotation_rad, 0.0, 1.0,
+        "no keyframe turned less than this from the last one, unless moved by min_translation_m");
+  field("max_interval_s", o.max_interval_s, 0.1, 60.0, "a moving camera makes a keyframe at least this often");
+  field("few_close_points", o.few_close_points, 0, 1000,
+        "fewer tracked points with depth than this count as too few, if many new ones are to be had");
+  field("many_new_close_points", o.many_new_close_points, 0, 1000, "how many new points with depth are many");
+}
+
+struct KeyframeEvidence {
+  int tracked = 0;                // inlier landmarks in this frame
+  int reference_landmarks = 0;    // well-established landmarks of the reference keyframe
+  int tracked_close = 0;          // inlier landmarks whose feature has depth
+  int untracked_close = 0;        // features with depth and no landmark
+  double seconds_since_last = 0;  // since the last keyframe was requested
+  double translation_m = 0;       // from the last keyframe requested
+  double rotation_rad = 0;
+  int backlog = 0;  // keyframes waiting for the mapper
+};
+
+bool keyframe_wanted(const KeyframePolicyOptions& options, const KeyframeEvidence& evidence);
+
+}  // namespace vsgraphs

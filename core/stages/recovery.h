@@ -1,0 +1,60 @@
+// Finding the pose where prediction failed: features are matched by descriptor alone, against the last frame and
+// its reference keyframe after a large step, or against any keyframe after a loss. The pose comes from a RANSAC
+// over matches with depth on both sides or one, and is then solved like any other.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/options.h"
+#include "core/map/map.h"
+#include "core/stages/frame_pose.h"
+
+namespace vsgraphs {
+
+struct RecoveryOptions {
+  int min_inliers = 25;
+  int min_relocalisation_inliers = 40;
+  int max_candidates = 5;
+};
+
+template <typename Visitor>
+void describe(RecoveryOptions& o, Visitor& field) {
+  field("min_inliers", o.min_inliers, 10, 500, "matches a pose found after a large step must explain");
+  field("min_relocalisation_inliers", o.min_relocalisation_inliers, 10, 500,
+        "matches a pose found after a loss must explain");
+  field("max_candidates", o.max_candidates, 1, 50, "keyframes tried per frame after a loss");
+}
+
+class Recovery {
+ public:
+  Recovery(const RecoveryOptions& options, const Camera& camera, const ScalePyramid& pyramid, std::uint64_t seed)
+      : options_(options), camera_(camera), pyramid_(pyramid), seed_(seed) {}
+
+  // Against the last frame (its landmarks and depth) and a keyframe; the better one wins. Fills `matches`.
+  std::optional<FramePose> from_recent(const Map& map, const FeatureSet& now, std::int64_t frame_index,
+                                       const FeatureSet& last, std::span<const LandmarkId> last_landmarks,
+                                       const Se3& world_from_last, KeyframeId keyframe, FrameMatches& matches);
+
+  // Against the keyframes that look most like the frame. Cost: about 50 us per keyframe of the map, plus a
+  // few ms per candidate.
+  std::optional<FramePose> from_anywhere(const Map& map, const FeatureSet& now, std::int64_t frame_index,
+                                         FrameMatches& matches);
+
+ private:
+  struct Source {
+    const FeatureSet* features;
+    std::span<const LandmarkId> landmarks;
+    Se3 world_from_camera;
+  };
+  std::optional<FramePose> align(const Map& map, const Source& source, const FeatureSet& now,
+                                 std::int64_t frame_index, int min_inliers, FrameMatches& matches) const;
+
+  RecoveryOptions options_;
+  Camera camera_;
+  ScalePyramid pyramid_;
+  std::uint64_t seed_;
+};
+
+}  // namespace vsgraphs

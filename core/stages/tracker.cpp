@@ -1,0 +1,315 @@
+#include "core/stages/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/vision/grey.h"
+
+namespace vsgraphs {
+
+const char* to_string(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::waiting: return "waiting";
+    case TrackStatus::initialised: return "initialised";
+    case TrackStatus::ok: return "ok";
+    case TrackStatus::coasting: return "coasting";
+    case TrackStatus::lost: return "lost";
+    case TrackStatus::relocalised: return "relocalised";
+  }
+  return "unknown";
+}
+
+Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Camera& camera, std::uint64_t seed)
+    : options_(options),
+      camera_(camera),
+      pyramid_{orb.levels, orb.scale_factor},
+      extractor_(orb, camera),
+      recovery_(options.recovery, camera, pyramid_, seed) {}
+
+TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, int backlog, TraceSink* trace) {
+  extract(frame, trace);
+  if (!last_) return start(snapshot);
+  const Map& map = *snapshot;
+  const double seconds = now_.timestamp_s - last_->timestamp_s;
+  const Se3 world_from_last = *map.resolve(last_->pose);
+  const Se3 predicted = motion_.predict(world_from_last, seconds);
+  adopt_landmarks_of_own_keyframe(map);
+
+  std::optional<FramePose> pose;
+  TrackStatus status = TrackStatus::ok;
+  if (!lost_) {
+    const Span span(trace, "match_motion");
+    pose = follow_motion(map, predicted);
+  }
+  if (!pose && !lost_) {
+    const Span span(trace, "recover");
+    pose = recovery_.from_recent(map, *now_.features, now_.index, *last_->features, last_->landmarks,
+                                 world_from_last, last_->pose.keyframe, matches_);
+  }
+  if (!pose && lost_) {
+    const Span span(trace, "relocalise");
+    pose = recovery_.from_anywhere(map, *now_.features, now_.index, matches_);
+    status = TrackStatus::relocalised;
+  }
+  if (pose) {
+    const Span span(trace, "match_local_map");
+    pose = refine_on_local_map(map, *pose);
+  }
+  if (pose && !believable(world_from_last, pose->world_from_camera, seconds)) pose.reset();
+  return pose ? finish(snapshot, *pose, status, backlog) : coast_or_lose(map, predicted);
+}
+
+void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
+  const Span span(trace, "extract");
+  now_ = FrameState{frame.index, frame.timestamp_s, nullptr, {}, {}};
+  ImageView<std::uint8_t> grey = frame.grey;
+  if (grey.empty()) {
+    to_grey(frame.colour, grey_);
+    grey = grey_.view();
+  }
+  now_.features = std::make_shared<const FeatureSet>(extractor_.extract(grey, frame.depth, frame.colour));
+  now_.landmarks.assign(static_cast<std::size_t>(now_.features->size()), LandmarkId{});
+}
+
+TrackedFrame Tracker::start(const Snapshot& snapshot) {
+  const auto with_depth = std::count_if(now_.features->features().begin(), now_.features->features().end(),
+                                        [](const Feature& f) { return f.has_depth(); });
+  if (with_depth < options_.min_features_to_start) return report(TrackStatus::waiting, Se3{});
+  // The request will become the map's first keyframe, and this frame hangs on it.
+  now_.pose = {snapshot->keyframes().next_id(), Se3{}};
+  last_measured_s_ = now_.timestamp_s;
+  TrackedFrame result = report(TrackStatus::initialised, Se3{});
+  result.matches = static_cast<int>(with_depth);
+  result.keyframe_request = make_request(now_.pose, true);
+  last_ = now_;
+  return result;
+}
+
+// If the last frame has become a keyframe meanwhile, its features have landmarks that the frame did not know.
+void Tracker::adopt_landmarks_of_own_keyframe(const Map& map) {
+  const std::uint32_t bound = map.keyframes().index_bound();
+  for (std::uint32_t back = 1; back <= std::min<std::uint32_t>(bound, 4); ++back) {
+    const Keyframe* keyframe = map.keyframes().find(map.keyframes().at_index(bound - back));
+    if (keyframe && keyframe->frame_index == last_->index) {
+      last_->landmarks = keyframe->landmarks;
+      return;
+    }
+  }
+  for (LandmarkId& id : last_->landmarks) {
+    if (id.valid()) id = map.landmarks().resolve(id);
+  }
+}
+
+std::optional<FramePose> Tracker::follow_motion(const Map& map, const Se3& predicted) {
+  for (const double widening : {1.0, 2.5}) {
+    auto pose = match_last_frame(map, predicted, widening * options_.search_radius_px);
+    if (pose) return pose;
+  }
+  return std::nullopt;
+}
+
+std::optional<FramePose> Tracker::match_last_frame(const Map& map, const Se3& predicted, double radius_px) {
+  constexpr int enough_landmarks = 150;
+  matches_.reset(now_.features->size());
+  match_points_of_last_frame(map, predicted, radius_px, true);
+  if (matches_.size() < enough_landmarks) match_points_of_last_frame(map, predicted, radius_px, false);
+  if (matches_.size() < options_.min_inliers) return std::nullopt;
+  const int found = matches_.size();
+  const FramePose pose = solve_frame_pose(camera_, pyramid_, *now_.features, predicted, matches_);
+  // A pose that most matches contradict is a coincidence.
+  if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < found) return std::nullopt;
+  return pose;
+}
+
+// Projects either the last frame's landmarks or its bare depth readings, and matches them.
+void Tracker::match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks) {
+  const Se3 world_from_last = *map.resolve(last_->pose);
+  const Se3 camera_from_world = predicted.inverse();
+  projections_.clear();
+  views_.clear();
+  for (int i = 0; i < last_->features->size(); ++i) {
+    const Feature& feature = (*last_->features)[i];
+    LandmarkView view;
+    const Landmark* landmark = map.landmarks().find(last_->landmarks[static_cast<std::size_t>(i)]);
+    if (landmarks != (landmark != nullptr)) continue;
+    if (landmark) {
+      view.id = last_->landmarks[static_cast<std::size_t>(i)];
+      view.point_in_world = landmark->point_in_world;
+    } else if (feature.has_depth()) {
+      view.point_in_world = world_from_last * camera_.unproject(feature.u, feature.v, feature.depth_m);
+    } else {
+      continue;
+    }
+    const Eigen::Vector3d p = camera_from_world * view.point_in_world;
+    if (p.z() < 0.05) continue;
+    const Eigen::Vector2d pixel = camera_.project(p);
+    if (!camera_.contains(pixel.x(), pixel.y())) continue;
+    view.projection.u = static_cast<float>(pixel.x());
+    view.projection.v = static_cast<float>(pixel.y());
+    view.projection.radius_px = static_cast<float>(radius_px * pyramid_.scale(feature.level));
+    view.projection.min_level = std::max(0, feature.level - 1);
+    view.projection.max_level = std::min(pyramid_.levels - 1, feature.level + 1);
+    view.projection.descriptor = &last_->features->descriptor(i);
+    view.projection.angle_rad = feature.angle_rad;
+    view.projection.has_angle = true;
+    views_.push_back(view);
+    projections_.push_back(view.projection);
+  }
+  MatchOptions options;
+  options.check_rotation = true;
+  const std::vector<int> found = match_projected(projections_, *now_.features, options, matches_.taken());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] >= 0) matches_.add({found[i], views_[i].id, views_[i].point_in_world});
+  }
+}
+
+std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const FramePose& guess) {
+  local_map_.select(map, matched_landmarks(), last_->pose.keyframe, options_.local_keyframes);
+  project_local_map(map, guess.world_from_camera);
+  MatchOptions options;
+  options.ratio = 0.8;
+  const std::vector<int> found = match_projected(projections_, *now_.features, options, matches_.taken());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] >= 0) matches_.add({found[i], views_[i].id, views_[i].point_in_world});
+  }
+  const auto landmarks = matched_landmarks().size();
+  // The map is the better reference; the last frame's own readings only carry where the map is thin.
+  if (static_cast<int>(landmarks) >= 2 * options_.min_inliers) matches_.keep_landmarks_only();
+  const int before = matches_.size();
+  const FramePose pose = solve_frame_pose(camera_, pyramid_, *now_.features, guess.world_from_camera, matches_);
+  if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < before) return std::nullopt;
+  return pose;
+}
+
+// Projects the local map's landmarks that are not matched yet; counts all that should be visible as such.
+void Tracker::project_local_map(const Map& map, const Se3& world_from_camera) {
+  const Se3 camera_from_world = world_from_camera.inverse();
+  std::vector<LandmarkId> matched = matched_landmarks();
+  std::sort(matched.begin(), matched.end());
+  projections_.clear();
+  views_.clear();
+  for (const LandmarkId id : local_map_.landmarks()) {
+    LandmarkView view;
+    if (!project_landmark(camera_, pyramid_, camera_from_world, id, *map.landmarks().find(id),
+                          options_.local_search_radius_px, view)) {
+      continue;
+    }
+    Sighting& sighting = sightings_[id];
+    sighting.landmark = id;
+    ++sighting.visible;
+    if (std::binary_search(matched.begin(), matched.end(), id)) continue;
+    views_.push_back(view);
+    projections_.push_back(view.projection);
+  }
+}
+
+bool Tracker::believable(const Se3& world_from_last, const Se3& world_from_now, double seconds) const {
+  if (!world_from_now.finite()) return false;
+  const Se3 step = world_from_last.inverse() * world_from_now;
+  constexpr double slack_m = 0.1, slack_rad = 0.1;
+  return step.translation().norm() <= options_.max_speed_m_per_s * seconds + slack_m &&
+         rotation_angle(step.rotation()) <= options_.max_turn_rad_per_s * seconds + slack_rad;
+}
+
+TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog) {
+  const Map& map = *snapshot;
+  for (const Correspondence& c : matches_.all()) {
+    if (!c.landmark.valid()) continue;
+    now_.landmarks[static_cast<std::size_t>(c.feature)] = c.landmark;
+    Sighting& sighting = sightings_[c.landmark];
+    sighting.landmark = c.landmark;
+    ++sighting.found;
+  }
+  const KeyframeId reference =
+      local_map_.reference().valid() ? local_map_.reference() : map.reanchor(last_->pose)->keyframe;
+  const Se3& world_from_reference = map.keyframes().find(reference)->world_from_camera;
+  now_.pose = {reference, world_from_reference.inverse() * pose.world_from_camera};
+
+  if (status == TrackStatus::relocalised) {
+    motion_.forget();
+  } else {
+    motion_.update(*map.resolve(last_->pose), pose.world_from_camera, now_.timestamp_s - last_->timestamp_s);
+  }
+  lost_ = false;
+  last_measured_s_ = now_.timestamp_s;
+  TrackedFrame result = report(status, pose.world_from_camera);
+  result.matches = pose.inliers;
+  if (keyframe_wanted(options_.keyframe, gather_evidence(map, pose.world_from_camera, backlog))) {
+    result.keyframe_request = make_request(now_.pose, false);
+  }
+  last_ = now_;
+  return result;
+}
+
+TrackedFrame Tracker::coast_or_lose(const Map& map, const Se3& predicted) {
+  if (lost_ || now_.timestamp_s - last_measured_s_ > options_.coast_s) {
+    lost_ = true;
+    motion_.forget();
+    return report(TrackStatus::lost, Se3{});
+  }
+  // The last measured frame stays the one to match against; only the prediction moves on.
+  const auto anchor = *map.reanchor(last_->pose);
+  now_.pose = {anchor.keyframe, map.keyframes().find(anchor.keyframe)->world_from_camera.inverse() * predicted};
+  return report(TrackStatus::coasting, predicted);
+}
+
+std::vector<LandmarkId> Tracker::matched_landmarks() const {
+  std::vector<LandmarkId> ids;
+  ids.reserve(matches_.all().size());
+  for (const Correspondence& c : matches_.all()) {
+    if (c.landmark.valid()) ids.push_back(c.landmark);
+  }
+  return ids;
+}
+
+KeyframeEvidence Tracker::gather_evidence(const Map& map, const Se3& world_from_camera, int backlog) const {
+  KeyframeEvidence e;
+  e.backlog = backlog;
+  e.seconds_since_last = now_.timestamp_s - last_keyframe_s_;
+  if (const auto last = map.resolve(*last_keyframe_pose_)) {
+    const Se3 step = last->inverse() * world_from_camera;
+    e.translation_m = step.translation().norm();
+    e.rotation_rad = rotation_angle(step.rotation());
+  }
+  const Keyframe* reference = map.keyframes().find(now_.pose.keyframe);
+  const std::size_t established = map.keyframes().size() > 2 ? 3 : 1;
+  for (const LandmarkId id : reference->landmarks) {
+    const Landmark* landmark = map.landmarks().find(id);
+    if (landmark && landmark->observations.size() >= established) ++e.reference_landmarks;
+  }
+  for (std::size_t i = 0; i < now_.landmarks.size(); ++i) {
+    const bool tracked = now_.landmarks[i].valid();
+    const bool depth = (*now_.features)[static_cast<int>(i)].has_depth();
+    e.tracked += tracked;
+    e.tracked_close += tracked && depth;
+    e.untracked_close += !tracked && depth;
+  }
+  return e;
+}
+
+std::shared_ptr<const KeyframeRequest> Tracker::make_request(const AnchoredPose& pose, bool first) {
+  auto request = std::make_shared<KeyframeRequest>();
+  request->frame_index = now_.index;
+  request->timestamp_s = now_.timestamp_s;
+  request->first = first;
+  request->pose = pose;
+  request->features = now_.features;
+  request->landmarks = now_.landmarks;
+  for (const auto& [id, sighting] : sightings_) request->sightings.push_back(sighting);
+  sightings_.clear();
+  last_keyframe_pose_ = pose;
+  last_keyframe_s_ = now_.timestamp_s;
+  return request;
+}
+
+TrackedFrame Tracker::report(TrackStatus status, const Se3& world_from_camera) const {
+  TrackedFrame result;
+  result.index = now_.index;
+  result.timestamp_s = now_.timestamp_s;
+  result.status = status;
+  result.pose = now_.pose;
+  result.world_from_camera = world_from_camera;
+  return result;
+}
+
+}  // namespace vsgraphs

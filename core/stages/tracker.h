@@ -1,0 +1,106 @@
+// Tracking: one frame in, its pose out. Reads a snapshot, writes nothing.
+//
+// Per frame: ORB features with depth -> constant-velocity prediction -> search around the last frame's points ->
+// pose -> search around the local map's landmarks -> pose. Where prediction fails, descriptors are matched
+// without it; where that fails, the pose is coasted for a moment and then lost until a keyframe is recognised.
+// A pose further away than a camera can have moved is never believed.
+// Scheme after ORB-SLAM2 (Mur-Artal, Tardos, T-RO 2017); residuals, gates and recovery are our own (docs).
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "core/base/options.h"
+#include "core/base/trace.h"
+#include "core/stages/frame_pose.h"
+#include "core/stages/keyframe_policy.h"
+#include "core/stages/local_map.h"
+#include "core/stages/messages.h"
+#include "core/stages/motion_model.h"
+#include "core/stages/recovery.h"
+#include "core/vision/orb_extractor.h"
+
+namespace vsgraphs {
+
+struct TrackerOptions {
+  double search_radius_px = 15;
+  double local_search_radius_px = 5;
+  int local_keyframes = 20;
+  int min_inliers = 20;
+  int min_features_to_start = 100;
+  double max_speed_m_per_s = 3.0;
+  double max_turn_rad_per_s = 5.0;
+  double coast_s = 0.4;
+  KeyframePolicyOptions keyframe;
+  RecoveryOptions recovery;
+};
+
+template <typename Visitor>
+void describe(TrackerOptions& o, Visitor& field) {
+  field("search_radius_px", o.search_radius_px, 2.0, 200.0, "search around predicted points of the last frame");
+  field("local_search_radius_px", o.local_search_radius_px, 1.0, 50.0, "search around projected landmarks");
+  field("local_keyframes", o.local_keyframes, 2, 200, "keyframes whose landmarks a frame is matched against");
+  field("min_inliers", o.min_inliers, 6, 200, "fewer inlier matches than this are no pose");
+  field("min_features_to_start", o.min_features_to_start, 20, 5000, "features with depth needed to start a map");
+  field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0, "a pose that would need more speed is rejected");
+  field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0, "a pose that would need a faster turn is rejected");
+  field("coast_s", o.coast_s, 0.0, 5.0, "how long the motion model is believed when nothing is measured");
+}
+
+class Tracker {
+ public:
+  Tracker(const TrackerOptions& options, const OrbOptions& orb, const Camera& camera, std::uint64_t seed);
+
+  // `backlog`: keyframes requested earlier and not yet in the snapshot. Frames come with increasing timestamps.
+  // Throws InputError for images that do not fit the camera.
+  TrackedFrame track(const RgbdFrame& frame, const Snapshot& snapshot, int backlog, TraceSink* trace);
+
+ private:
+  // The frame being worked on, and afterwards the last one.
+  struct FrameState {
+    std::int64_t index = 0;
+    double timestamp_s = 0;
+    std::shared_ptr<const FeatureSet> features;
+    std::vector<LandmarkId> landmarks;  // per feature
+    AnchoredPose pose;
+  };
+
+  void extract(const RgbdFrame& frame, TraceSink* trace);
+  TrackedFrame start(const Snapshot& snapshot);
+  std::optional<FramePose> follow_motion(const Map& map, const Se3& predicted);
+  std::optional<FramePose> match_last_frame(const Map& map, const Se3& predicted, double radius_px);
+  void match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks);
+  std::optional<FramePose> refine_on_local_map(const Map& map, const FramePose& guess);
+  void project_local_map(const Map& map, const Se3& world_from_camera);
+  bool believable(const Se3& world_from_last, const Se3& world_from_now, double seconds) const;
+  void adopt_landmarks_of_own_keyframe(const Map& map);
+  TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);
+  TrackedFrame coast_or_lose(const Map& map, const Se3& predicted);
+  std::vector<LandmarkId> matched_landmarks() const;
+  KeyframeEvidence gather_evidence(const Map& map, const Se3& world_from_camera, int backlog) const;
+  std::shared_ptr<const KeyframeRequest> make_request(const AnchoredPose& pose, bool first);
+  TrackedFrame report(TrackStatus status, const Se3& world_from_camera) const;
+
+  TrackerOptions options_;
+  Camera camera_;
+  ScalePyramid pyramid_;
+  OrbExtractor extractor_;
+  Recovery recovery_;
+  Image<std::uint8_t> grey_;
+
+  MotionModel motion_;
+  LocalMap local_map_;
+  FrameMatches matches_;
+  std::vector<ProjectedPoint> projections_;
+  std::vector<LandmarkView> views_;
+  std::map<LandmarkId, Sighting> sightings_;
+
+  std::optional<FrameState> last_;  // the last frame that had a pose
+  FrameState now_;
+  double last_measured_s_ = 0;  // when a pose was last measured, not coasted
+  bool lost_ = false;
+  std::optional<AnchoredPose> last_keyframe_pose_;
+  double last_keyframe_s_ = 0;
+};
+
+}  // namespace vsgraphs
