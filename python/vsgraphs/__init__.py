@@ -1,0 +1,78 @@
+"""vsgraphs: RGB-D SLAM and 3D scene graphs in one factor graph.
+
+    config = vsgraphs.Config()
+    slam = vsgraphs.Slam(config, sequence.camera)
+    result = slam.track(rgb, depth, timestamp)  # (H, W, 3) uint8, (H, W) uint16 raw units or float32 m,
+    seconds slam.finish()
+    timestamps, poses = slam.trajectory()       # (N,) seconds, (N, 4, 4) world_from_camera, metres
+
+Importing the package loads nothing; each name loads what it needs at first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vsgraphs._core import Camera as Camera
+    from vsgraphs._core import Config as Config
+    from vsgraphs._core import Slam as Slam
+    from vsgraphs._core import Snapshot as Snapshot
+    from vsgraphs._core import TrackResult as TrackResult
+    from vsgraphs.datasets import Calibration as Calibration
+    from vsgraphs.datasets import Sequence as Sequence
+    from vsgraphs.datasets import open_sequence as open_sequence
+    from vsgraphs.errors import FrameError as FrameError
+    from vsgraphs.errors import InputError as InputError
+    from vsgraphs.evaluate import evaluate as evaluate
+    from vsgraphs.trajectory import Trajectory as Trajectory
+
+_CORE = ("Camera", "Config", "Slam", "Snapshot", "TrackResult")
+_PYTHON = {
+    "Calibration": "vsgraphs.datasets",
+    "FrameError": "vsgraphs.errors",
+    "InputError": "vsgraphs.errors",
+    "Sequence": "vsgraphs.datasets",
+    "Trajectory": "vsgraphs.trajectory",
+    "evaluate": "vsgraphs.evaluate",
+    "open_sequence": "vsgraphs.datasets",
+}
+
+__all__ = [
+    "Calibration",
+    "Camera",
+    "Config",
+    "FrameError",
+    "InputError",
+    "Sequence",
+    "Slam",
+    "Snapshot",
+    "TrackResult",
+    "Trajectory",
+    "evaluate",
+    "open_sequence",
+]
+
+
+def __getattr__(name: str) -> Any:
+    value: Any
+    if name in _CORE:
+        from vsgraphs.compiled import core
+
+        value = getattr(core(), name)
+    elif name in _PYTHON:
+        import importlib
+
+        value = getattr(importlib.import_module(_PYTHON[name]), name)
+    elif name == "__version__":
+        from vsgraphs.version import version
+
+        value = version()
+    else:
+        raise AttributeError(f"module 'vsgraphs' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__, "__version__"])

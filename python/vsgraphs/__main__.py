@@ -1,0 +1,5 @@
+"""`python -m vsgraphs`."""
+
+from vsgraphs.cli import main
+
+main()

@@ -1,0 +1,19 @@
+"""The program `vsgraphs`."""
+
+from __future__ import annotations
+
+import sys
+
+
+def main() -> None:
+    """Entry point: runs the command line and ends the process with its exit code."""
+    import os
+
+    # numpy's linear algebra would start a thread per core, which nothing here uses. Before numpy is imported.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    from vsgraphs.cli.app import app
+    from vsgraphs.cli.failures import told
+
+    with told():
+        app()
+    sys.exit(0)

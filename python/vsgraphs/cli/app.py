@@ -1,0 +1,126 @@
+"""The commands and their options. Each command's work is imported only when it is asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vsgraphs.cli.failures import set_debug, told
+
+app = typer.Typer(
+    name="vsgraphs",
+    help="RGB-D SLAM and 3D scene graphs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from vsgraphs.version import version
+
+        print(f"vsgraphs {version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    debug: Annotated[bool, typer.Option("--debug", help="Show the trace of unexpected errors.")] = False,
+    version: Annotated[  # noqa: ARG001  (its callback does the work)
+        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
+    ] = False,
+) -> None:
+    set_debug(on=debug)
+
+
+@app.command()
+def run(
+    source: Annotated[
+        Path, typer.Argument(help="Folder of the sequence (TUM, ICL-NUIM, 7-Scenes, Replica).")
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Directory for the results.")],
+    camera: Annotated[
+        str | None, typer.Option(help="camera.yaml or a known camera's name, if the folder has none.")
+    ] = None,
+    mode: Annotated[str | None, typer.Option(help="What is estimated: slam.")] = None,
+    execution: Annotated[str | None, typer.Option(help="threaded (default) or serial.")] = None,
+    realtime: Annotated[
+        bool,
+        typer.Option("--realtime", help="Pace frames by their timestamps; drop late ones like a camera."),
+    ] = False,
+    max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")] = None,
+    config: Annotated[Path | None, typer.Option(help="YAML file of options (see `vsgraphs config`).")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set one option; repeatable.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
+    schedule_out: Annotated[
+        Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
+    ] = None,
+    replay: Annotated[Path | None, typer.Option(help="Repeat the run recorded in this file exactly.")] = None,
+) -> None:
+    """Track a camera through a recorded sequence and build the map."""
+    with told():
+        from vsgraphs.cli.run import RunRequest, run_sequence
+
+        shortcuts = {
+            "system.mode": mode,
+            "system.execution": execution,
+            "system.realtime": realtime or None,
+            "system.seed": seed,
+            "system.schedule_out": None if schedule_out is None else str(schedule_out),
+            "system.replay": None if replay is None else str(replay),
+        }
+        request = RunRequest(
+            source=source,
+            out=out,
+            camera=camera,
+            realtime=realtime,
+            max_frames=max_frames,
+            config_file=config,
+            assignments=list(set_ or []),
+            shortcuts={key: value for key, value in shortcuts.items() if value is not None},
+        )
+        code = run_sequence(request)
+    raise typer.Exit(code)
+
+
+@app.command("eval")
+def evaluate(
+    trajectory: Annotated[
+        Path, typer.Argument(help="Trajectory in TUM format, or the directory a run left it in.")
+    ] = Path("trajectory.txt"),
+    groundtruth: Annotated[
+        Path, typer.Option(help="True trajectory (TUM, ICL-NUIM, Replica), or the sequence's folder.")
+    ] = ...,  # type: ignore[assignment]  # typer's way of saying: required
+    sequence: Annotated[
+        Path | None, typer.Option(help="Folder of the input sequence, to count completion against.")
+    ] = None,
+    max_dt: Annotated[
+        float, typer.Option(help="Largest time between an estimated and a true pose of a pair, seconds.")
+    ] = 0.01,
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write the figures to this file.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw both trajectories to this .png or .svg file.")
+    ] = None,
+) -> None:
+    """Compare a trajectory with the ground truth: ATE, RPE, completion."""
+    with told():
+        from vsgraphs.cli.compare import CompareRequest, compare
+
+        compare(CompareRequest(trajectory, groundtruth, sequence, max_dt, json_file, plot))
+
+
+@app.command()
+def config(
+    search: Annotated[str | None, typer.Argument(help="Show only options whose key contains this.")] = None,
+    as_yaml: Annotated[bool, typer.Option("--yaml", help="Print a file that `run --config` reads.")] = False,
+) -> None:
+    """Print every option: key, default, range, meaning."""
+    with told():
+        from vsgraphs.cli.show_config import show_config
+
+        show_config(search, as_yaml=as_yaml)

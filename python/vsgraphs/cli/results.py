@@ -1,0 +1,102 @@
+"""The files a run leaves behind."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from vsgraphs.cli import measures
+from vsgraphs.compiled import core
+from vsgraphs.errors import InputError
+from vsgraphs.export.atomic import write_atomically
+from vsgraphs.export.ply import format_ply
+from vsgraphs.export.timeline import Span, format_timeline
+from vsgraphs.trajectory import format_tum
+from vsgraphs.version import commit, versions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from vsgraphs.cli.run import RunOutcome
+
+
+def write_results(outcome: RunOutcome) -> dict[str, Any]:
+    """Writes all files, the small ones first; returns run.json's content.
+
+    When one cannot be written the others are still tried; then InputError names all that are missing.
+    """
+    out = outcome.request.out
+    slam = outcome.slam
+    snapshot = slam.snapshot()
+    stamps, poses = slam.trajectory()
+    _, keyframe_stamps, keyframe_poses = snapshot.keyframes()
+    positions, colours = snapshot.landmarks()
+    report = run_report(outcome, len(stamps), len(keyframe_stamps), len(positions))
+    contents: dict[str, Callable[[], str | bytes]] = {
+        "trajectory.txt": lambda: format_tum(stamps, poses),
+        "keyframes.txt": lambda: format_tum(keyframe_stamps, keyframe_poses),
+        "run.json": lambda: json.dumps(report, indent=1) + "\n",
+        "map.ply": lambda: format_ply(positions, colours),
+        "timeline.json": lambda: format_timeline(_spans(outcome)),
+    }
+    failures = []
+    for name, content in contents.items():
+        try:
+            write_atomically(out / name, content())
+        except InputError as error:
+            failures.append((name, str(error)))
+    if failures:
+        others = [name for name, _ in failures[1:]]
+        raise InputError(failures[0][1] + (f" (nor {', '.join(others)})" if others else ""))
+    return report
+
+
+def run_report(outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int) -> dict[str, Any]:
+    """run.json: figures, then what is needed to repeat them."""
+    statistics = outcome.slam.statistics()
+    processed = outcome.tally.seen
+    return {
+        "frames": outcome.frames,
+        "tracked": tracked,
+        "completion": tracked / outcome.frames if outcome.frames else 0.0,
+        "skipped": dict(sorted({**outcome.sequence.skipped, **outcome.tally.skipped}.items())),
+        "keyframes": keyframes,
+        "landmarks": landmarks,
+        "wall_s": outcome.wall_s,
+        "waited_s": float(statistics["waited_s"]),
+        "cpu_s": outcome.cpu_s,
+        "fps": processed / outcome.wall_s if outcome.wall_s > 0 else 0.0,
+        "peak_memory_mb": measures.peak_memory_mb(),
+        "startup_s": outcome.startup_s,
+        "interrupted": outcome.tally.interrupted,
+        "stages": statistics["stages"],
+        "source": {
+            "name": outcome.sequence.name,
+            "format": outcome.sequence.format,
+            "camera": outcome.sequence.calibration.origin,
+        },
+        "versions": versions(core()),
+        "commit": commit(core()),
+        "configuration": {key: outcome.config.get(key) for key in outcome.config.keys()},  # noqa: SIM118
+        "seed": outcome.config.get("system.seed"),
+        "warnings": [*outcome.sequence.warnings, *outcome.tally.warnings, *statistics["warnings"]],
+    }
+
+
+def summarise(report: dict[str, Any], out: Path) -> str:
+    """Two lines for people."""
+    startup = report["startup_s"]
+    return (
+        f"tracked {report['tracked']} of {report['frames']} frames ({100 * report['completion']:.1f} %), "
+        f"{report['keyframes']} keyframes, {report['landmarks']} landmarks; {report['fps']:.1f} frames/s, "
+        f"CPU {report['cpu_s']:.1f} s, {report['peak_memory_mb']:.0f} MB"
+        + (f", first pose after {startup:.2f} s" if startup is not None else "")
+        + f"\nresults in {out}: trajectory.txt keyframes.txt map.ply run.json timeline.json"
+    )
+
+
+def _spans(outcome: RunOutcome) -> list[Span]:
+    spans: list[Span] = [tuple(span) for span in outcome.slam.trace()]
+    spans += [("decoding", "decode", *span) for span in outcome.tally.decode_spans]
+    return spans

@@ -1,0 +1,125 @@
+"""`vsgraphs run`: from a recorded sequence to a trajectory and a map."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from vsgraphs.cli import measures
+from vsgraphs.cli.interrupt import Interrupt
+from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
+from vsgraphs.cli.progress import Progress
+from vsgraphs.cli.session import Session, Tally
+from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
+from vsgraphs.datasets import RecordedSequence, open_sequence
+from vsgraphs.datasets.prefetch import Prefetcher
+from vsgraphs.errors import InputError
+from vsgraphs.export.atomic import prepare_directory
+
+
+@dataclass
+class RunRequest:
+    """What the user asked for."""
+
+    source: Path
+    out: Path
+    camera: str | None = None
+    realtime: bool = False
+    max_frames: int | None = None
+    config_file: Path | None = None
+    assignments: list[str] = field(default_factory=list)
+    shortcuts: dict[str, Value] = field(default_factory=dict)
+
+
+@dataclass
+class RunOutcome:
+    """A finished run, before it is written."""
+
+    request: RunRequest
+    sequence: RecordedSequence
+    config: Any
+    slam: Any
+    tally: Tally
+    frames: int
+    wall_s: float
+    cpu_s: float
+    startup_s: float | None
+
+
+def run_sequence(request: RunRequest) -> int:
+    """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
+    sequence = open_sequence(request.source, request.camera)
+    prepare_directory(request.out)
+    frames = sequence.frames[: request.max_frames]
+    print(sequence.describe(), flush=True)
+    for line in sequence.warnings:
+        print(f"warning: {line}", file=sys.stderr, flush=True)
+    with Prefetcher(frames) as loaded:  # the first images decode while the core is loaded
+        from vsgraphs.compiled import core
+
+        config = make_config(core(), request)
+        slam = core().Slam(config, sequence.camera)
+        progress = Progress(len(frames))
+        with Interrupt() as interrupt:
+            pacing = Realtime(interrupt.requested) if request.realtime else AsFastAsPossible()
+            stamps = [frame.timestamp for frame in frames]
+            session = Session(slam, loaded, stamps, progress, pacing, interrupt.requested)
+            began = time.monotonic()
+            tally = session.run()
+            loaded.close()
+            progress.clear()
+            if tally.interrupted:
+                print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
+            slam.finish()
+            outcome = _outcome(request, sequence, config, slam, tally, began)
+            from vsgraphs.cli.results import summarise, write_results
+
+            written = write_results(outcome)
+    if not len(slam.trajectory()[0]) and not tally.interrupted:
+        raise InputError(nothing_tracked(request.source, tally))
+    print(summarise(written, request.out))
+    return interrupt.exit_code
+
+
+def make_config(core: Any, request: RunRequest) -> Any:
+    """The core's Config: defaults, then the file, then --set, then the options of their own."""
+    config = core.Config()
+    if request.config_file is not None:
+        apply_file(config, request.config_file)
+    apply_assignments(config, request.assignments)
+    apply_shortcuts(config, request.shortcuts)
+    return config
+
+
+def nothing_tracked(source: Path, tally: Tally) -> str:
+    """Why a run ended without a single pose, in one line."""
+    unusable = tally.skipped["damaged"] + tally.skipped["refused"]
+    if tally.seen and unusable == tally.seen:
+        first = tally.warnings[0].removeprefix("skipped: ") if tally.warnings else "unknown"
+        return f"none of the {tally.seen} frames of {source} can be used; the first: {first}"
+    return (
+        f"no frame of {source} could be tracked ({tally.seen - unusable} of {tally.seen} readable): "
+        "too little depth or texture to start a map; check the depth images and depth_scale"
+    )
+
+
+def _outcome(
+    request: RunRequest, sequence: RecordedSequence, config: Any, slam: Any, tally: Tally, began: float
+) -> RunOutcome:
+    started = measures.process_start()
+    first = tally.first_tracked_at
+    whole = request.max_frames is None and not tally.interrupted
+    return RunOutcome(
+        request,
+        sequence,
+        config,
+        slam,
+        tally,
+        frames=tally.seen + (sum(sequence.skipped.values()) if whole else 0),
+        wall_s=time.monotonic() - began,
+        cpu_s=measures.cpu_s(),
+        startup_s=None if first is None else first - started,
+    )

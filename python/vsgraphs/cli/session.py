@@ -1,0 +1,135 @@
+"""The loop over a sequence's frames."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+from vsgraphs.cli.pacing import AsFastAsPossible, Pacing
+
+if TYPE_CHECKING:
+    from vsgraphs.datasets.prefetch import LoadedFrame
+
+# Of each kind of damage this many frames are named, the rest are counted.
+_NAMED_FRAMES = 5
+
+
+class Listener(Protocol):
+    """Who wants to know how a run goes."""
+
+    def frame(self, tally: Tally, status: str) -> None:
+        """A frame was dealt with."""
+        ...
+
+    def event(self, line: str) -> None:
+        """Something worth a line happened."""
+        ...
+
+
+@dataclass
+class Tally:
+    """What became of the frames so far."""
+
+    seen: int = 0  # handed out by the sequence, in whatever state
+    tracked: int = 0
+    skipped: Counter[str] = field(default_factory=Counter)  # reason -> frames: damaged, dropped, refused
+    warnings: list[str] = field(default_factory=list)
+    first_tracked_at: float | None = None  # time.monotonic
+    decode_spans: list[tuple[int, int, int]] = field(default_factory=list)  # begin us, duration us, frame
+    interrupted: bool = False
+
+
+class Session:
+    """Feeds frames to a tracker until they end or `stop` says so; keeps count, never the frames.
+
+    slam: a `vsgraphs.Slam` or anything with its `track`. A frame that cannot be read or that the tracker
+    refuses is skipped and counted. What is lost and found again is told to the listener and kept as a
+    warning.
+    """
+
+    def __init__(
+        self,
+        slam: Any,
+        frames: Iterable[LoadedFrame],
+        stamps: Sequence[float],
+        listener: Listener,
+        pacing: Pacing | None = None,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self._slam = slam
+        self._frames = frames
+        self._stamps = stamps
+        self._listener = listener
+        self._pacing = pacing or AsFastAsPossible()
+        self._stop = stop
+        self._status = ""
+        self._lost_since: float | None = None
+        self.tally = Tally()
+
+    def run(self) -> Tally:
+        """Tracks all frames; returns the count."""
+        tally = self.tally
+        for frame in self._frames:
+            if self._stop():
+                tally.interrupted = True
+                break
+            following = self._stamps[frame.index + 1] if frame.index + 1 < len(self._stamps) else None
+            admitted = self._pacing.admit(frame.timestamp, following)
+            if self._stop():
+                tally.interrupted = True
+                break
+            tally.seen += 1
+            tally.decode_spans.append(
+                (int(frame.begin_s * 1e6), int((frame.end_s - frame.begin_s) * 1e6), frame.index)
+            )
+            if frame.error is not None:
+                self._skip("damaged", str(frame.error))
+            elif not admitted:
+                self._skip("dropped", None)
+            else:
+                self._track(frame)
+            self._listener.frame(tally, self._status)
+        dropped = tally.skipped["dropped"]
+        if dropped:
+            tally.warnings.append(f"{dropped} frames came while an earlier one was tracked, dropped")
+        return tally
+
+    def _track(self, frame: LoadedFrame) -> None:
+        try:
+            result = self._slam.track(frame.rgb, frame.depth, frame.timestamp)
+        except ValueError as error:  # the core's InputError: this frame cannot be used
+            self._skip("refused", f"frame {frame.index} at {frame.timestamp:.6f} s: {error}")
+            return
+        if result.tracked:
+            self.tally.tracked += 1
+            if self.tally.first_tracked_at is None:
+                self.tally.first_tracked_at = time.monotonic()
+        self._follow(str(result.status), frame)
+
+    def _follow(self, status: str, frame: LoadedFrame) -> None:
+        """Tells when tracking is lost and found."""
+        self._status = status
+        if status == "lost" and self._lost_since is None:
+            self._lost_since = frame.timestamp
+            self._tell(f"lost at frame {frame.index} ({frame.timestamp:.3f} s)")
+        elif status in ("ok", "relocalised", "initialised") and self._lost_since is not None:
+            gone = frame.timestamp - self._lost_since
+            self._lost_since = None
+            self._tell(f"relocalised at frame {frame.index} ({frame.timestamp:.3f} s), lost for {gone:.2f} s")
+
+    def _skip(self, reason: str, message: str | None) -> None:
+        skipped = self.tally.skipped
+        skipped[reason] += 1
+        if message is None:
+            return
+        if skipped[reason] <= _NAMED_FRAMES:
+            self._tell(f"skipped: {message}")
+        elif skipped[reason] == _NAMED_FRAMES + 1:
+            self._tell(f"more {reason} frames follow, counted but not named")
+
+    def _tell(self, line: str) -> None:
+        self.tally.warnings.append(line)
+        self._listener.event(line)

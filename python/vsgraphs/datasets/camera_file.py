@@ -1,0 +1,232 @@
+"""camera.yaml: the pinhole camera and depth sensor of a sequence.
+
+Required: width, height (pixels), fx, fy, cx, cy (pixels; pixel centres at integers). Optional: distortion
+([k1, k2, p1, p2, k3] or those names one by one), fps, depth_scale (raw units per metre, 5000 as in TUM
+where not given), depth_min, depth_max (metres), invalid_depth (raw values), depth_noise ([offset_m,
+scale_per_m, onset_m]). A key that looks like a misspelt one is an error; keys that only describe (source,
+licence, ...) are accepted.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from vsgraphs.errors import InputError
+
+_INTEGERS = ("width", "height")
+_REQUIRED = ("width", "height", "fx", "fy", "cx", "cy")
+_NUMBERS = (
+    "fx",
+    "fy",
+    "cx",
+    "cy",
+    "fps",
+    "depth_scale",
+    "depth_min",
+    "depth_max",
+    "depth_min_m",
+    "depth_max_m",
+)
+_LENS = ("k1", "k2", "p1", "p2", "k3")
+_LISTS = ("distortion", "invalid_depth", "depth_noise")
+_DESCRIPTIVE = frozenset(
+    [
+        "source",
+        "licence",
+        "license",
+        "scene",
+        "commit",
+        "timestamps",
+        "rgb_depth_registered",
+        "baseline_for_bf",
+        "bf",
+        "name",
+        "model",
+        "description",
+        "remarks",
+        "notes",
+        "comment",
+        "seed",
+        "plan",
+        "url",
+        "author",
+        "date",
+        "unit",
+    ]
+)
+_KNOWN = (*_INTEGERS, *_NUMBERS, *_LENS, *_LISTS)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Camera and depth sensor, the fields of `vsgraphs.Camera`; `origin` says where it comes from."""
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    fps: float = 30.0
+    depth_scale: float = 5000.0
+    depth_min_m: float = 0.3
+    depth_max_m: float = 8.0
+    invalid_depth: tuple[int, ...] = (0, 65535)
+    depth_noise: tuple[float, float, float] | None = None
+    origin: str = "built in"
+
+    def to_core(self) -> Any:
+        """The `vsgraphs.Camera` of these numbers (loads the compiled module)."""
+        from vsgraphs.compiled import core
+
+        optional = {} if self.depth_noise is None else {"depth_noise": self.depth_noise}
+        return core().Camera(
+            self.width,
+            self.height,
+            self.fx,
+            self.fy,
+            self.cx,
+            self.cy,
+            distortion=self.distortion,
+            fps=self.fps,
+            depth_scale=self.depth_scale,
+            depth_min_m=self.depth_min_m,
+            depth_max_m=self.depth_max_m,
+            invalid_depth=list(self.invalid_depth),
+            **optional,
+        )
+
+
+def read_camera_file(path: Path) -> tuple[Calibration, list[str]]:
+    """Reads and checks a camera.yaml. Returns the calibration and remarks worth telling."""
+    values = _parse(path)
+    remarks = _check_keys(path, values)
+    missing = [key for key in _REQUIRED if key not in values]
+    if missing:
+        raise InputError(f"{path}: {', '.join(missing)} missing; a camera needs {', '.join(_REQUIRED)}")
+    numbers = {key: _number(path, key, values[key]) for key in (*_INTEGERS, *_NUMBERS) if key in values}
+    for plain, with_unit in (("depth_min", "depth_min_m"), ("depth_max", "depth_max_m")):
+        if plain in numbers:
+            numbers[with_unit] = numbers.pop(plain)
+    fields: dict[str, Any] = dict(numbers)
+    for key in _INTEGERS:
+        if numbers[key] != int(numbers[key]):
+            raise InputError(f"{path}: {key} is {numbers[key]}, expected whole pixels")
+        fields[key] = int(numbers[key])
+    fields["distortion"] = _distortion(path, values)
+    if "invalid_depth" in values:
+        fields["invalid_depth"] = _invalid_depth(path, values["invalid_depth"])
+    if values.get("depth_noise") is not None:
+        fields["depth_noise"] = _depth_noise(path, values["depth_noise"])
+    if "depth_scale" not in values:
+        remarks.append(f"{path.name}: no depth_scale, 5000 raw units per metre (TUM) assumed")
+    calibration = Calibration(**fields, origin=path.name)
+    check_calibration(calibration, str(path))
+    return calibration, remarks
+
+
+def check_calibration(camera: Calibration, source: str) -> None:
+    """Raises InputError naming the first field that makes no sense."""
+    for key in ("width", "height", "fx", "fy", "fps", "depth_scale", "depth_max_m"):
+        if not getattr(camera, key) > 0:
+            raise InputError(f"{source}: {key} is {getattr(camera, key)}, must be positive")
+    if camera.width > 16384 or camera.height > 16384:
+        raise InputError(f"{source}: {camera.width}x{camera.height} pixels is larger than any camera")
+    if not (0 <= camera.cx < camera.width and 0 <= camera.cy < camera.height):
+        raise InputError(f"{source}: cx, cy = {camera.cx}, {camera.cy} lies outside the image")
+    if not 0 <= camera.depth_min_m < camera.depth_max_m:
+        raise InputError(
+            f"{source}: depth_min {camera.depth_min_m} m must be at least 0 and below depth_max "
+            f"{camera.depth_max_m} m"
+        )
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    import yaml
+
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read camera file {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(
+            f"camera file {path} is not text; expected YAML with fx, fy, cx, cy, width, height"
+        ) from None
+    try:
+        values = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f":{mark.line + 1}" if mark else ""
+        if text.startswith("%YAML"):
+            raise InputError(
+                f"{path}: an OpenCV camera file; write plain YAML with fx, fy, cx, cy, ..."
+            ) from None
+        raise InputError(f"{path}{where}: not valid YAML ({getattr(error, 'problem', error)})") from None
+    if not isinstance(values, dict):
+        raise InputError(f"{path}: expected YAML lines like 'fx: 525.0'")
+    return {str(key): value for key, value in values.items()}
+
+
+def _check_keys(path: Path, values: dict[str, Any]) -> list[str]:
+    ignored = []
+    for key in values:
+        if key in _KNOWN or key in _DESCRIPTIVE:
+            continue
+        nearest = get_close_matches(key.lower(), _KNOWN, n=1, cutoff=0.75)
+        if nearest:
+            raise InputError(f"{path}: unknown key '{key}'; did you mean '{nearest[0]}'?")
+        ignored.append(key)
+    return [f"{path.name}: keys not used: {', '.join(ignored)}"] if ignored else []
+
+
+def _number(path: Path, key: str, value: Any) -> float:
+    if isinstance(value, str):  # YAML 1.1 takes 5e3 for a word
+        try:
+            value = float(value)
+        except ValueError:
+            raise InputError(f"{path}: {key} is {value!r}, expected a number") from None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(f"{path}: {key} is {value!r}, expected a finite number")
+    return float(value)
+
+
+def _numbers(path: Path, key: str, value: Any) -> list[float]:
+    if not isinstance(value, list | tuple):
+        raise InputError(f"{path}: {key} is {value!r}, expected a list of numbers")
+    return [_number(path, key, item) for item in value]
+
+
+def _distortion(path: Path, values: dict[str, Any]) -> tuple[float, float, float, float, float]:
+    if "distortion" not in values:
+        k1, k2, p1, p2, k3 = (_number(path, key, values.get(key, 0.0)) for key in _LENS)
+        return (k1, k2, p1, p2, k3)
+    if any(key in values for key in _LENS):
+        raise InputError(f"{path}: give either distortion or k1, k2, p1, p2, k3, not both")
+    given = _numbers(path, "distortion", values["distortion"])
+    if len(given) not in (0, 4, 5):
+        raise InputError(f"{path}: distortion has {len(given)} numbers, expected 4 or 5 (k1 k2 p1 p2 k3)")
+    k1, k2, p1, p2, k3 = [*given, *[0.0] * (5 - len(given))]
+    return (k1, k2, p1, p2, k3)
+
+
+def _invalid_depth(path: Path, value: Any) -> tuple[int, ...]:
+    given = _numbers(path, "invalid_depth", value if isinstance(value, list | tuple) else [value])
+    if any(item != int(item) or not 0 <= item <= 65535 for item in given):
+        raise InputError(f"{path}: invalid_depth {value!r} must hold whole numbers from 0 to 65535")
+    return tuple(int(item) for item in given)
+
+
+def _depth_noise(path: Path, value: Any) -> tuple[float, float, float]:
+    if isinstance(value, dict):
+        value = [value.get(key, 0.0) for key in ("offset_m", "scale_per_m", "onset_m")]
+    given = _numbers(path, "depth_noise", value)
+    if len(given) != 3 or min(given) < 0:
+        raise InputError(
+            f"{path}: depth_noise must be three numbers of at least 0: offset_m, scale_per_m, onset_m"
+        )
+    return (given[0], given[1], given[2])

@@ -1,0 +1,9 @@
+"""Errors a user can cure. Every message is one line that names the file or key and what to do."""
+
+
+class InputError(ValueError):
+    """What the user gave cannot be used: a file, an option, an array of the wrong shape."""
+
+
+class FrameError(InputError):
+    """One frame of a sequence cannot be read (missing, truncated, wrong size). The others still can."""

@@ -1,0 +1,47 @@
+"""Writing a file so that nobody ever sees half of it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+
+from vsgraphs.errors import InputError
+
+
+def write_atomically(path: Path, content: str | bytes) -> None:
+    """Writes beside `path` and renames. Raises InputError (no space, no permission); an old file then
+    stays.
+    """
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with beside.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        beside.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+        raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+
+
+def prepare_directory(path: Path) -> None:
+    """Creates the output directory if need be and proves that files can be written there. Raises
+    InputError.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise InputError(f"output {path} is a file; give a directory") from None
+    except OSError as error:
+        raise InputError(f"cannot create output directory {path}: {error.strerror or error}") from None
+    probe = path / f".writable.{os.getpid()}"
+    try:
+        probe.write_bytes(b"probe\n")
+    except OSError as error:
+        raise InputError(f"output directory {path} is not writable: {error.strerror or error}") from None
+    finally:
+        with contextlib.suppress(OSError):
+            probe.unlink()
