@@ -78,5 +78,3 @@ BENCHMARK(BM_align_matches)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace vsgraphs
-
-BENCHMARK_MAIN();
