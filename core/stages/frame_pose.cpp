@@ -33,4 +33,33 @@ void FrameMatches::keep_landmarks_only() {
   keep(flags);
 }
 
+PoseObservation pose_observation(const Camera& camera, const ScalePyramid& pyramid, const Feature& feature,
+                                 const Eigen::Vector3d& point_in_world) {
+  PoseObservation o;
+  o.point_in_world = point_in_world;
+  o.u = static_cast<double>(feature.u);
+  o.v = static_cast<double>(feature.v);
+  o.inv_sigma_px = 1.0 / pyramid.level_sigma_px(feature.level);
+  if (feature.has_depth()) {
+    const double depth_m = static_cast<double>(feature.depth_m);
+    o.inverse_depth = 1.0 / depth_m;
+    o.inv_sigma_inverse_depth = inv_sigma_of_inverse_depth(camera.depth_noise, depth_m);
+  }
+  return o;
+}
+
+FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, const FeatureSet& features,
+                           const Se3& initial, FrameMatches& matches) {
+  std::vector<PoseObservation> observations;
+  observations.reserve(matches.all().size());
+  for (const Correspondence& c : matches.all()) {
+    observations.push_back(pose_observation(camera, pyramid, features[c.feature], c.point_in_world));
+  }
+  const PoseSolution solution = solve_pose(Intrinsics::of(camera), initial, observations);
+  std::vector<std::uint8_t> inlier(observations.size());
+  for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(solution.fit[i]);
+  matches.keep(inlier);
+  return {solution.world_from_camera, solution.inliers, !solution.degenerate};
+}
+
 }  // namespace vsgraphs

@@ -1,6 +1,6 @@
 #include "core/stages/landmark_creation.h"
 
-#include <cmath>
+#include <array>
 
 #include "core/solve/triangulate.h"
 #include "core/stages/appearance.h"
@@ -45,16 +45,17 @@ Eigen::Matrix3d fundamental(const Camera& camera, const Se3& b_from_a) {
   return k_inverse.transpose() * skew(b_from_a.translation()) * b_from_a.rotation() * k_inverse;
 }
 
-PixelView view_of(const Camera& camera, const ScalePyramid& pyramid, const Keyframe& keyframe, int feature) {
+ViewOfPoint view_of(const Camera& camera, const ScalePyramid& pyramid, const Keyframe& keyframe, int feature) {
   const Feature& f = (*keyframe.features)[feature];
-  PixelView view;
+  ViewOfPoint view;
   view.world_from_camera = keyframe.world_from_camera;
-  view.u = f.u;
-  view.v = f.v;
-  view.inv_sigma_px = 1.0 / pyramid.level_sigma_px(f.level);
+  view.measurement.u = f.u;
+  view.measurement.v = f.v;
+  view.measurement.inv_sigma_px = 1.0 / pyramid.level_sigma_px(f.level);
   if (f.has_depth()) {
-    view.inverse_depth = 1.0 / f.depth_m;
-    view.inv_sigma_inverse_depth = inv_sigma_of_inverse_depth(camera.depth_noise, f.depth_m);
+    view.measurement.inverse_depth = 1.0 / static_cast<double>(f.depth_m);
+    view.measurement.inv_sigma_inverse_depth =
+        inv_sigma_of_inverse_depth(camera.depth_noise, static_cast<double>(f.depth_m));
   }
   return view;
 }
@@ -93,11 +94,11 @@ std::vector<LandmarkId> create_by_triangulation(const Camera& camera, const Scal
     for (const auto& [i, j] : match_epipolar(*keyframe.features, open, *neighbour.features, open_there,
                                              fundamental(camera, neighbour_from_keyframe), pyramid, max_sigmas,
                                              options)) {
-      const std::vector<PixelView> views{view_of(camera, pyramid, keyframe, i),
-                                         view_of(camera, pyramid, neighbour, j)};
+      const std::array<ViewOfPoint, 2> views{view_of(camera, pyramid, keyframe, i),
+                                             view_of(camera, pyramid, neighbour, j)};
       const auto point = triangulate(Intrinsics::of(camera), views);
       if (!point) continue;
-      made.push_back(add_landmark(point->point_in_world, keyframe.frame_index,
+      made.push_back(add_landmark(*point, keyframe.frame_index,
                                   {{id, static_cast<std::uint16_t>(i)}, {neighbour_id, static_cast<std::uint16_t>(j)}},
                                   draft));
     }

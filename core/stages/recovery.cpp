@@ -1,7 +1,7 @@
 #include "core/stages/recovery.h"
 
 #include "core/base/rng.h"
-#include "core/solve/align_points.h"
+#include "core/solve/align_matches.h"
 #include "core/vision/matching.h"
 #include "core/vision/place_candidates.h"
 
@@ -64,15 +64,16 @@ std::optional<FramePose> Recovery::align(const Map& map, const Source& source, c
     observations.push_back(pose_observation(camera_, pyramid_, now[here], point));
   }
   if (static_cast<int>(candidates.size()) < min_inliers) return std::nullopt;
-  Rng rng(seed_, "recovery", static_cast<std::uint64_t>(frame_index));
-  const auto aligned = align_by_ransac(Intrinsics::of(camera_), observations, rng);
-  if (!aligned) return std::nullopt;
+  AlignMatchesOptions align_options;
+  align_options.min_inliers = min_inliers;
+  const auto aligned = align_matches(Intrinsics::of(camera_), observations,
+                                     Rng(seed_, "recovery", static_cast<std::uint64_t>(frame_index)), align_options);
+  if (!aligned || aligned->degenerate) return std::nullopt;
   for (const Correspondence& c : candidates) matches.add(c);
-  matches.keep(aligned->inliers);
-  if (matches.size() < min_inliers) return std::nullopt;
-  const FramePose pose = solve_frame_pose(camera_, pyramid_, now, aligned->world_from_camera, matches);
-  if (!pose.trustworthy || pose.inliers < min_inliers) return std::nullopt;
-  return pose;
+  std::vector<std::uint8_t> inlier(candidates.size());
+  for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned->fit[i]);
+  matches.keep(inlier);
+  return FramePose{aligned->world_from_camera, matches.size(), true};
 }
 
 }  // namespace vsgraphs

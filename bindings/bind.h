@@ -1,0 +1,13 @@
+// One function per folder of the core; module.cpp calls them in order.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace vsgraphs {
+
+void bind_camera(nanobind::module_& m);
+void bind_config(nanobind::module_& m);
+void bind_slam(nanobind::module_& m);
+void bind_simulate(nanobind::module_& m);
+
+}  // namespace vsgraphs

@@ -1,0 +1,188 @@
+#include "core/system/slam.h"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings/arrays.h"
+#include "bindings/bind.h"
+#include "core/base/check.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace vsgraphs {
+
+namespace {
+
+using AnyImage = nb::ndarray<nb::ro, nb::device::cpu>;
+
+std::string shape_of(const AnyImage& image) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < image.ndim(); ++i) text += (i ? ", " : "") + std::to_string(image.shape(i));
+  return text + ")";
+}
+
+// Rows must be dense; rows themselves may be apart (a view of a wider array).
+template <typename T>
+ImageView<T> view_of(const AnyImage& image, const char* name, std::int64_t channels) {
+  const bool dense = image.stride(1) == channels && (image.ndim() == 2 || image.stride(2) == 1);
+  require_input(dense && image.stride(0) % channels == 0,
+                std::string(name) + ": the image's rows are not contiguous; pass numpy.ascontiguousarray(image)");
+  return {static_cast<const T*>(image.data()), static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0)),
+          image.stride(0) / channels};
+}
+
+RgbdFrame frame_of(const AnyImage& rgb, const AnyImage& depth, double timestamp) {
+  RgbdFrame frame;
+  frame.timestamp_s = timestamp;
+  const bool grey = rgb.ndim() == 2;
+  require_input(rgb.dtype() == nb::dtype<std::uint8_t>() && (grey || (rgb.ndim() == 3 && rgb.shape(2) == 3)),
+                "rgb: must be uint8 of shape (height, width, 3) or (height, width), not of shape " + shape_of(rgb));
+  if (grey) {
+    frame.grey = view_of<std::uint8_t>(rgb, "rgb", 1);
+  } else {
+    frame.colour = view_of<Rgb>(rgb, "rgb", 3);
+  }
+  require_input(depth.ndim() == 2, "depth: must have shape (height, width), not " + shape_of(depth));
+  if (depth.dtype() == nb::dtype<std::uint16_t>()) {
+    frame.depth.raw = view_of<std::uint16_t>(depth, "depth", 1);
+  } else {
+    require_input(depth.dtype() == nb::dtype<float>(),
+                  "depth: must be uint16 (raw units, see Camera.depth_scale) or float32 (metres)");
+    frame.depth.metres = view_of<float>(depth, "depth", 1);
+  }
+  return frame;
+}
+
+nb::object pose_or_none(const TrackedFrame& frame) {
+  if (!has_pose(frame.status)) return nb::none();
+  std::vector<double> rows;
+  append_rows(rows, frame.world_from_camera);
+  return nb::cast(to_numpy(std::move(rows), {4, 4}));
+}
+
+nb::tuple keyframes_of(const Map& map) {
+  std::vector<std::uint32_t> ids;
+  std::vector<double> stamps, poses;
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
+    ids.push_back(id.index);
+    stamps.push_back(keyframe.timestamp_s);
+    append_rows(poses, keyframe.world_from_camera);
+  });
+  const std::size_t n = ids.size();
+  return nb::make_tuple(to_numpy(std::move(ids), {n}), to_numpy(std::move(stamps), {n}),
+                        to_numpy(std::move(poses), {n, 4, 4}));
+}
+
+nb::tuple landmarks_of(const Map& map) {
+  std::vector<double> points;
+  std::vector<std::uint8_t> colours;
+  map.landmarks().for_each([&](LandmarkId, const Landmark& landmark) {
+    for (int k = 0; k < 3; ++k) points.push_back(landmark.point_in_world[k]);
+    const Rgb& c = landmark.appearance.colour;
+    colours.insert(colours.end(), {c.r, c.g, c.b});
+  });
+  const std::size_t n = points.size() / 3;
+  return nb::make_tuple(to_numpy(std::move(points), {n, 3}), to_numpy(std::move(colours), {n, 3}));
+}
+
+nb::tuple trajectory_of(const Slam& slam) {
+  std::vector<double> stamps, poses;
+  for (const TimedPose& pose : slam.trajectory()) {
+    stamps.push_back(pose.timestamp_s);
+    append_rows(poses, pose.world_from_camera);
+  }
+  const std::size_t n = stamps.size();
+  return nb::make_tuple(to_numpy(std::move(stamps), {n}), to_numpy(std::move(poses), {n, 4, 4}));
+}
+
+nb::dict statistics_of(const Slam& slam) {
+  const RunStatistics s = slam.statistics();
+  nb::dict stages;
+  for (const auto& [name, stage] : s.stages) {
+    nb::dict d;
+    d["count"] = stage.count;
+    d["median_ms"] = stage.median_ms;
+    d["p95_ms"] = stage.p95_ms;
+    d["max_ms"] = stage.max_ms;
+    d["cpu_median_ms"] = stage.cpu_median_ms;
+    d["cpu_p95_ms"] = stage.cpu_p95_ms;
+    stages[name.c_str()] = d;
+  }
+  nb::dict result;
+  result["frames"] = s.frames;
+  result["tracked"] = s.tracked;
+  result["waited_s"] = s.waited_s;
+  result["stages"] = stages;
+  result["warnings"] = s.warnings;
+  return result;
+}
+
+nb::list trace_of(const Slam& slam) {
+  nb::list events;
+  for (const SpanRecorder* recorder : slam.spans()) {
+    for (const SpanRecord& span : recorder->spans()) {
+      events.append(nb::make_tuple(recorder->lane(), span.name, span.begin_us, span.duration_us, span.frame));
+    }
+  }
+  return events;
+}
+
+void bind_results(nb::module_& m) {
+  nb::class_<TrackedFrame>(m, "TrackResult", "What became of one frame.")
+      .def_prop_ro("status", [](const TrackedFrame& f) { return to_string(f.status); },
+                   "waiting, initialised, ok, coasting, lost or relocalised")
+      .def_prop_ro("tracked", [](const TrackedFrame& f) { return has_pose(f.status); })
+      .def_prop_ro("world_from_camera", &pose_or_none,
+                   "(4, 4) float64 as known when the frame was tracked; None without a pose. World: the first "
+                   "keyframe's camera.")
+      .def_prop_ro("is_keyframe", [](const TrackedFrame& f) { return f.keyframe_request != nullptr; })
+      .def_prop_ro("matches", [](const TrackedFrame& f) { return f.matches; }, "inlier matches behind the pose");
+
+  nb::class_<Map>(m, "Snapshot", "The map at one moment; it never changes.")
+      .def_prop_ro("version", &Map::version)
+      .def("keyframes", &keyframes_of,
+           "(ids (N,) uint32, timestamps (N,) float64 s, world_from_camera (N, 4, 4) float64)")
+      .def("landmarks", &landmarks_of, "(points in the world (M, 3) float64 m, colours (M, 3) uint8)");
+}
+
+}  // namespace
+
+void bind_slam(nb::module_& m) {
+  bind_results(m);
+  nb::class_<Slam>(m, "Slam", "RGB-D SLAM: frames in, trajectory and map out.")
+      .def(nb::init<const Config&, const Camera&>(), "config"_a, "camera"_a,
+           "Raises InputError if the configuration or the camera make no sense.")
+      .def(
+          "track",
+          [](Slam& slam, const AnyImage& rgb, const AnyImage& depth, double timestamp) {
+            const RgbdFrame frame = frame_of(rgb, depth, timestamp);
+            const nb::gil_scoped_release release;
+            return slam.track(frame);
+          },
+          "rgb"_a, "depth"_a, "timestamp"_a,
+          "Tracks one frame; the images are only read during the call.\n\n"
+          "Args:\n"
+          "  rgb: uint8, (height, width, 3) in RGB order or (height, width) grey.\n"
+          "  depth: (height, width), uint16 in raw units (Camera.depth_scale per metre) or float32 in metres.\n"
+          "  timestamp: seconds, later than the last frame's.\n\n"
+          "Raises InputError for wrong shapes or types and for timestamps that are not finite or do not rise; the\n"
+          "frame then changes nothing. The GIL is released while tracking.")
+      .def("snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
+           "The newest map. Cheap, from any thread.")
+      .def("finish", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(),
+           "Ends the work under way; track() is an error afterwards.")
+      .def("close", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(), "The same as finish().")
+      .def("trajectory", &trajectory_of,
+           "(timestamps (N,) float64 s, world_from_camera (N, 4, 4) float64) of all frames with a pose, corrected "
+           "by everything learned since.")
+      .def("statistics", &statistics_of, "frames, tracked, waited_s, warnings and stages; complete after finish().")
+      .def("trace", &trace_of,
+           "List of (lane, stage, begin_us, duration_us, frame); complete after finish(). Time is the monotonic "
+           "clock's.")
+      .def_prop_ro("backlog", &Slam::backlog, "keyframes waiting for the mapper");
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,68 @@
+// All options in one place, found by dotted keys ("tracker.coast_s"). Names, defaults, ranges and meanings come
+// from the stages' own `describe` functions; nothing is written down twice.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/stages/local_mapper.h"
+#include "core/stages/tracker.h"
+#include "core/vision/orb_extractor.h"
+
+namespace vsgraphs {
+
+struct SystemOptions {
+  std::string mode = "slam";
+  std::string execution = "threaded";
+  int seed = 0;
+  bool realtime = false;
+  int max_waiting_keyframes = 2;
+  std::string schedule_out;
+  std::string replay;
+};
+
+template <typename Visitor>
+void describe(SystemOptions& o, Visitor& field) {
+  field("mode", o.mode, AllowedValues{"slam"}, "what is estimated: slam (trajectory and landmarks)");
+  field("execution", o.execution, AllowedValues{"threaded", "serial"},
+        "threaded: mapping beside tracking; serial: one after the other, the same bytes on every run");
+  field("seed", o.seed, 0, 2147483647, "start of all random numbers");
+  field("realtime", o.realtime, "tracking never waits for mapping, as with a live camera");
+  field("max_waiting_keyframes", o.max_waiting_keyframes, 1, 50,
+        "unless realtime: tracking waits while more keyframes than this wait for the mapper");
+  field("schedule_out", o.schedule_out, AllowedValues{}, "file to record a run's schedule in, to replay it exactly");
+  field("replay", o.replay, AllowedValues{}, "recorded schedule to follow, edit by edit");
+}
+
+using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
+
+struct OptionDescription {
+  std::string key;
+  OptionValue value, default_value;
+  double minimum = 0, maximum = 0;  // of numbers
+  AllowedValues allowed;            // of texts; empty: any
+  std::string meaning;
+};
+
+class Config {
+ public:
+  SystemOptions system;
+  OrbOptions orb;
+  TrackerOptions tracker;
+  LocalMapperOptions mapper;
+
+  // Throws InputError: unknown key (names the nearest), wrong type, out of range (names the range).
+  void set(const std::string& key, const OptionValue& value);
+  OptionValue get(const std::string& key) const;
+  std::vector<OptionDescription> describe_all() const;
+  // What ranges alone cannot tell. Throws InputError.
+  void validate() const;
+
+ private:
+  template <typename Visitor>
+  void visit(Visitor&& visitor);
+};
+
+}  // namespace vsgraphs

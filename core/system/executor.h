@@ -1,0 +1,37 @@
+// How the stages are run: one after the other, side by side, or along a recorded schedule. The stages are the same.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/stages/messages.h"
+#include "core/system/config.h"
+#include "core/system/schedule.h"
+#include "core/system/span_recorder.h"
+
+namespace vsgraphs {
+
+class Executor {
+ public:
+  virtual ~Executor() = default;
+  // Empty where the executor passes the frame over (a replay of a run that never saw it).
+  virtual std::optional<TrackedFrame> track(const RgbdFrame& frame) = 0;
+  // Waits for all work; afterwards the map is final. May be called twice.
+  virtual void finish() = 0;
+
+  virtual Snapshot snapshot() const = 0;
+  virtual std::int64_t backlog() const = 0;
+  // Time the tracker spent waiting for the mapper, s.
+  virtual double waited_s() const { return 0.0; }
+  // Complete after finish().
+  virtual std::vector<const SpanRecorder*> spans() const = 0;
+  virtual Schedule schedule() const = 0;
+};
+
+std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera);
+std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera);
+// Follows config.system.replay. track() and finish() throw InputError when the run departs from it.
+std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera);
+
+}  // namespace vsgraphs

@@ -1,0 +1,58 @@
+#include "core/system/map_owner.h"
+
+namespace vsgraphs {
+
+void SnapshotCell::publish(Content content) {
+  const std::lock_guard lock(mutex_);
+  content_ = std::move(content);
+  changed_.notify_all();
+}
+
+SnapshotCell::Content SnapshotCell::take() const {
+  const std::lock_guard lock(mutex_);
+  return content_;
+}
+
+void SnapshotCell::wait_for_inserted(std::int64_t count) const {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this, count] { return closed_ || content_.inserted >= count; });
+}
+
+void SnapshotCell::close() {
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  changed_.notify_all();
+}
+
+MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell)
+    : snapshot_(map_.snapshot()),
+      mapper_(config.mapper, camera, config.orb.pyramid()),
+      cell_(cell),
+      spans_("local mapping") {
+  cell_.publish({snapshot_, 0});
+}
+
+void MapOwner::insert(const KeyframeRequest& request) {
+  spans_.set_frame(request.frame_index);
+  const MapEdit edit = mapper_.insert(request, snapshot_, newest_, &spans_);
+  newest_frame_ = request.frame_index;
+  ++inserted_;
+  apply(edit, {EditEvent::Kind::insert, request.frame_index, 0, 0});
+}
+
+void MapOwner::refine(const std::function<bool()>& stop) {
+  SolveReport report;
+  const MapEdit edit = mapper_.refine(newest_, snapshot_, stop, report, &spans_);
+  apply(edit, {EditEvent::Kind::refine, newest_frame_, report.iterations, 0});
+}
+
+void MapOwner::apply(const MapEdit& edit, EditEvent event) {
+  const Span span(&spans_, "apply_edit");
+  map_.apply(edit);
+  snapshot_ = map_.snapshot();
+  event.hash = edit.hash();
+  edits_.push_back(event);
+  cell_.publish({snapshot_, inserted_});
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,64 @@
+// The one place where the map is written. Takes keyframe requests, has the mapper work out edits, applies them and
+// publishes a snapshot after each. Runs on one thread, whichever the executor gives it.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+
+#include "core/stages/local_mapper.h"
+#include "core/system/config.h"
+#include "core/system/schedule.h"
+#include "core/system/span_recorder.h"
+
+namespace vsgraphs {
+
+// The newest snapshot, for any thread to take.
+class SnapshotCell {
+ public:
+  struct Content {
+    Snapshot snapshot;
+    std::int64_t inserted = 0;  // keyframe requests that are in the snapshot
+  };
+  void publish(Content content);
+  Content take() const;
+  // Waits until at least `count` requests are in, or the cell is closed.
+  void wait_for_inserted(std::int64_t count) const;
+  // Ends all waiting, now and later.
+  void close();
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  Content content_;
+  bool closed_ = false;
+};
+
+class MapOwner {
+ public:
+  MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell);
+
+  // One step each: request -> keyframe in the map; window around the keyframe inserted last -> adjusted.
+  // `stop` is asked between iterations.
+  void insert(const KeyframeRequest& request);
+  void refine(const std::function<bool()>& stop);
+
+  std::uint64_t version() const { return map_.version(); }
+  const std::vector<EditEvent>& edits() const { return edits_; }
+  const SpanRecorder& spans() const { return spans_; }
+
+ private:
+  void apply(const MapEdit& edit, EditEvent event);
+
+  Map map_;
+  Snapshot snapshot_;
+  LocalMapper mapper_;
+  SnapshotCell& cell_;
+  SpanRecorder spans_;
+  KeyframeId newest_;
+  std::int64_t newest_frame_ = 0;
+  std::int64_t inserted_ = 0;
+  std::vector<EditEvent> edits_;
+};
+
+}  // namespace vsgraphs

@@ -1,0 +1,76 @@
+#include <deque>
+
+#include "core/base/check.h"
+#include "core/system/executor.h"
+#include "core/system/map_owner.h"
+#include "core/system/tracking_lane.h"
+
+namespace vsgraphs {
+
+namespace {
+
+// Serial, but each frame sees the map version it saw in the recorded run.
+class ReplayingExecutor : public Executor {
+ public:
+  ReplayingExecutor(const Config& config, const Camera& camera)
+      : schedule_(Schedule::read(config.system.replay)), tracking_(config, camera), owner_(config, camera, cell_) {}
+
+  std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
+    if (next_frame_ >= schedule_.frames.size()) return std::nullopt;
+    const FrameEvent& event = schedule_.frames[next_frame_];
+    if (event.timestamp_s != frame.timestamp_s) return std::nullopt;  // dropped in the recorded run
+    ++next_frame_;
+    advance_to(event.version);
+    TrackedFrame result = tracking_.track(frame, cell_.take());
+    if (result.keyframe_request) waiting_.push_back(result.keyframe_request);
+    return result;
+  }
+
+  void finish() override {
+    require_input(next_frame_ == schedule_.frames.size(),
+                  "replay: the schedule holds " + std::to_string(schedule_.frames.size()) + " frames, but only " +
+                      std::to_string(next_frame_) + " of them came; replay it on the sequence it was recorded on");
+    advance_to(schedule_.edits.size());
+  }
+
+  Snapshot snapshot() const override { return cell_.take().snapshot; }
+  std::int64_t backlog() const override { return static_cast<std::int64_t>(waiting_.size()); }
+  std::vector<const SpanRecorder*> spans() const override { return {&tracking_.spans(), &owner_.spans()}; }
+  Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
+
+ private:
+  void advance_to(std::uint64_t version) {
+    while (owner_.version() < version) {
+      const EditEvent& event = schedule_.edits.at(owner_.version());
+      if (event.kind == EditEvent::Kind::insert) {
+        require_input(!waiting_.empty() && waiting_.front()->frame_index == event.frame, departed(event));
+        owner_.insert(*waiting_.front());
+        waiting_.pop_front();
+      } else {
+        int left = event.iterations;
+        owner_.refine([&left] { return left-- <= 0; });
+      }
+      require_input(owner_.edits().back() == event, departed(event));
+    }
+  }
+
+  static std::string departed(const EditEvent& event) {
+    return "replay: the run departs from the schedule at frame " + std::to_string(event.frame) +
+           "; it was recorded with another sequence, configuration or build";
+  }
+
+  Schedule schedule_;
+  SnapshotCell cell_;
+  TrackingLane tracking_;
+  MapOwner owner_;
+  std::size_t next_frame_ = 0;
+  std::deque<std::shared_ptr<const KeyframeRequest>> waiting_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera) {
+  return std::make_unique<ReplayingExecutor>(config, camera);
+}
+
+}  // namespace vsgraphs

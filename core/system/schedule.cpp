@@ -1,0 +1,70 @@
+#include "core/system/schedule.h"
+
+#include <bit>
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+#include "core/base/check.h"
+
+namespace vsgraphs {
+
+Schedule Schedule::read(const std::string& path) {
+  std::ifstream file(path);
+  require_input(file.is_open(), path + ": cannot be opened; give a file written by system.schedule_out");
+  Schedule schedule;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    std::istringstream in(line);
+    std::string what;
+    in >> what;
+    bool ok = true;
+    if (what == "frame") {
+      FrameEvent e;
+      std::uint64_t stamp_bits = 0;
+      ok = static_cast<bool>(in >> e.frame >> std::hex >> stamp_bits >> std::dec >> e.version);
+      e.timestamp_s = std::bit_cast<double>(stamp_bits);
+      schedule.frames.push_back(e);
+    } else if (what == "insert" || what == "refine") {
+      EditEvent e;
+      e.kind = what == "insert" ? EditEvent::Kind::insert : EditEvent::Kind::refine;
+      ok = static_cast<bool>(in >> e.frame);
+      if (e.kind == EditEvent::Kind::refine) ok = ok && static_cast<bool>(in >> e.iterations);
+      ok = ok && static_cast<bool>(in >> std::hex >> e.hash);
+      schedule.edits.push_back(e);
+    } else {
+      ok = false;
+    }
+    require_input(ok, path + ":" + std::to_string(number) + ": not a line of a schedule");
+  }
+  require_input(!schedule.frames.empty(), path + ": holds no frames; it is not a recorded schedule");
+  return schedule;
+}
+
+void Schedule::write(const std::string& path) const {
+  const std::string temporary = path + ".part";
+  {
+    std::ofstream file(temporary);
+    for (const FrameEvent& e : frames) {
+      file << "frame " << e.frame << ' ' << std::hex << std::bit_cast<std::uint64_t>(e.timestamp_s) << std::dec << ' '
+           << e.version << '\n';
+    }
+    for (const EditEvent& e : edits) {
+      if (e.kind == EditEvent::Kind::insert) {
+        file << "insert " << e.frame;
+      } else {
+        file << "refine " << e.frame << ' ' << e.iterations;
+      }
+      file << ' ' << std::hex << e.hash << std::dec << '\n';
+    }
+    file.flush();
+    if (!file) {
+      std::remove(temporary.c_str());
+      throw InputError(path + ": cannot be written; check the folder and the space left");
+    }
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) throw InputError(path + ": cannot be written");
+}
+
+}  // namespace vsgraphs

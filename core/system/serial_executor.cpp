@@ -1,0 +1,39 @@
+#include "core/system/executor.h"
+#include "core/system/map_owner.h"
+#include "core/system/tracking_lane.h"
+
+namespace vsgraphs {
+
+namespace {
+
+class SerialExecutor : public Executor {
+ public:
+  SerialExecutor(const Config& config, const Camera& camera) : tracking_(config, camera), owner_(config, camera, cell_) {}
+
+  std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
+    TrackedFrame result = tracking_.track(frame, cell_.take());
+    if (result.keyframe_request) {
+      owner_.insert(*result.keyframe_request);
+      owner_.refine([] { return false; });
+    }
+    return result;
+  }
+  void finish() override {}
+  Snapshot snapshot() const override { return cell_.take().snapshot; }
+  std::int64_t backlog() const override { return 0; }
+  std::vector<const SpanRecorder*> spans() const override { return {&tracking_.spans(), &owner_.spans()}; }
+  Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
+
+ private:
+  SnapshotCell cell_;
+  TrackingLane tracking_;
+  MapOwner owner_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera) {
+  return std::make_unique<SerialExecutor>(config, camera);
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,73 @@
+// The whole system behind one class: frames in, trajectory and map out.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/stages/messages.h"
+#include "core/system/config.h"
+#include "core/system/executor.h"
+
+namespace vsgraphs {
+
+struct TimedPose {
+  double timestamp_s = 0;
+  Se3 world_from_camera;
+};
+
+struct RunStatistics {
+  std::int64_t frames = 0;   // handed to track()
+  std::int64_t tracked = 0;  // of them, with a pose
+  double waited_s = 0;       // tracking waiting for mapping
+  std::map<std::string, StageStatistics> stages;
+  std::vector<std::string> warnings;
+};
+
+class Slam {
+ public:
+  // Throws InputError if configuration or camera make no sense, or a schedule to replay cannot be read.
+  Slam(const Config& config, const Camera& camera);
+  ~Slam();
+
+  // Tracks one frame; the images are read during the call only. One caller at a time. Throws InputError for a
+  // timestamp that is not finite or not later than the last one's, or images that do not fit the camera; such a
+  // frame changes nothing and the next one can follow. Throws InputError after finish().
+  TrackedFrame track(RgbdFrame frame);
+
+  // The newest published map; any thread, any time. Cost: one pointer.
+  Snapshot snapshot() const;
+  // Keyframes waiting for the mapper.
+  std::int64_t backlog() const;
+
+  // Ends the work that is under way; further calls of track() are an error. May be called twice.
+  void finish();
+
+  // Poses of all frames that have one, in order, corrected by everything learned since.
+  std::vector<TimedPose> trajectory() const;
+  // The following are complete after finish().
+  RunStatistics statistics() const;
+  std::vector<const SpanRecorder*> spans() const;
+
+ private:
+  struct FrameRecord {
+    std::int64_t index;
+    double timestamp_s;
+    AnchoredPose pose;
+  };
+  void note_status(const TrackedFrame& frame);
+
+  Config config_;
+  std::unique_ptr<Executor> executor_;
+  std::vector<FrameRecord> records_;
+  std::vector<std::string> warnings_;
+  std::int64_t frames_ = 0;
+  double last_timestamp_s_;
+  bool lost_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace vsgraphs

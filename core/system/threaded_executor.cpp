@@ -1,0 +1,103 @@
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <exception>
+#include <thread>
+
+#include "core/base/bounded_queue.h"
+#include "core/system/executor.h"
+#include "core/system/map_owner.h"
+#include "core/system/tracking_lane.h"
+
+namespace vsgraphs {
+
+namespace {
+
+// The caller's thread tracks; one worker owns the map.
+class ThreadedExecutor : public Executor {
+ public:
+  ThreadedExecutor(const Config& config, const Camera& camera)
+      : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_), requests_(queue_capacity) {
+    worker_ = std::thread([this] { work(); });
+  }
+  ~ThreadedExecutor() override { stop_worker(); }
+
+  std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
+    rethrow_worker_failure();
+    TrackedFrame result = tracking_.track(frame, cell_.take());
+    if (result.keyframe_request) requests_.push(result.keyframe_request);
+    // Nothing can be tracked before the first keyframe stands.
+    if (result.status == TrackStatus::initialised) cell_.wait_for_inserted(1);
+    if (!options_.realtime) wait_for_mapper();
+    return result;
+  }
+
+  void finish() override {
+    stop_worker();
+    rethrow_worker_failure();
+  }
+
+  Snapshot snapshot() const override { return cell_.take().snapshot; }
+  std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
+  double waited_s() const override { return waited_s_; }
+  std::vector<const SpanRecorder*> spans() const override { return {&tracking_.spans(), &owner_.spans()}; }
+  Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
+
+ private:
+  // Far above what the keyframe policy lets wait, so that a push never blocks at camera pace.
+  static constexpr std::size_t queue_capacity = 64;
+
+  void work() {
+    // Tracking is what a user waits for; on Linux the priority is the thread's own.
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
+    try {
+      while (const auto request = requests_.pop()) {
+        owner_.insert(**request);
+        owner_.refine([this] { return requests_.size() >= 2; });
+      }
+    } catch (...) {
+      failure_ = std::current_exception();
+      requests_.close();
+    }
+    cell_.close();
+  }
+
+  void wait_for_mapper() {
+    const std::int64_t needed = tracking_.requested() - options_.max_waiting_keyframes;
+    if (cell_.take().inserted >= needed) return;
+    const auto begin = std::chrono::steady_clock::now();
+    cell_.wait_for_inserted(needed);
+    waited_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  void stop_worker() {
+    requests_.close();
+    if (worker_.joinable()) worker_.join();
+  }
+
+  // The worker closes the queue before it leaves, and a closed queue is seen through its lock: so is `failure_`.
+  void rethrow_worker_failure() {
+    if (!requests_.closed()) return;
+    stop_worker();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+  SystemOptions options_;
+  SnapshotCell cell_;
+  TrackingLane tracking_;
+  MapOwner owner_;
+  BoundedQueue<std::shared_ptr<const KeyframeRequest>> requests_;
+  std::exception_ptr failure_;
+  double waited_s_ = 0;
+  std::thread worker_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera) {
+  return std::make_unique<ThreadedExecutor>(config, camera);
+}
+
+}  // namespace vsgraphs

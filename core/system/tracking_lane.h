@@ -1,0 +1,41 @@
+// The tracker with its clock and its log of which map version each frame saw; shared by all executors.
+#pragma once
+
+#include "core/stages/tracker.h"
+#include "core/system/config.h"
+#include "core/system/map_owner.h"
+#include "core/system/schedule.h"
+#include "core/system/span_recorder.h"
+
+namespace vsgraphs {
+
+class TrackingLane {
+ public:
+  TrackingLane(const Config& config, const Camera& camera)
+      : tracker_(config.tracker, config.orb, camera, static_cast<std::uint64_t>(config.system.seed)),
+        spans_("tracking") {}
+
+  TrackedFrame track(const RgbdFrame& frame, const SnapshotCell::Content& content) {
+    spans_.set_frame(frame.index);
+    TrackedFrame result;
+    {
+      const Span span(&spans_, "track");
+      result = tracker_.track(frame, content.snapshot, static_cast<int>(requested_ - content.inserted), &spans_);
+    }
+    frames_.push_back({frame.index, frame.timestamp_s, content.snapshot->version()});
+    if (result.keyframe_request) ++requested_;
+    return result;
+  }
+
+  std::int64_t requested() const { return requested_; }
+  const SpanRecorder& spans() const { return spans_; }
+  const std::vector<FrameEvent>& frames() const { return frames_; }
+
+ private:
+  Tracker tracker_;
+  SpanRecorder spans_;
+  std::vector<FrameEvent> frames_;
+  std::int64_t requested_ = 0;
+};
+
+}  // namespace vsgraphs
