@@ -109,8 +109,7 @@ def _leaves(node: Any, prefix: str) -> Iterator[tuple[str, Value, int]]:
     if isinstance(node, yaml.MappingNode):
         for key_node, value_node in node.value:
             key = f"{prefix}.{key_node.value}" if prefix else str(key_node.value)
-            for leaf_key, value, _ in _leaves(value_node, key):
-                yield leaf_key, value, (key_node.start_mark.line + 1 if leaf_key == key else _)
+            yield from _leaves(value_node, key)
     elif isinstance(node, yaml.ScalarNode):
         if not prefix:
             raise InputError(f"{node.start_mark.name}:{line}: expected lines like 'tracker:' or 'key: value'")
