@@ -1,7 +1,7 @@
 """Writes small sequences in the published layouts of the datasets.
 
-The scene is a textured wall the camera slides along. The wall is parallel to the image plane at DISTANCE_M; the
-camera moves along x by whole pixels, so images are crops of one texture and the truth is exact.
+The scene is a textured wall the camera slides along. The wall is parallel to the image plane at DISTANCE_M;
+the camera moves along x by whole pixels, so images are crops of one texture and the truth is exact.
 """
 
 from __future__ import annotations

@@ -115,6 +115,41 @@ def evaluate(
 
 
 @app.command()
+def simulate(
+    plan: Annotated[str, typer.Argument(help="An included plan's name or a JSON file.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the sequence; must be new or empty.")],
+    seed: Annotated[int, typer.Option(help="Which draw of the sensor's noise.")] = 0,
+    noise: Annotated[str, typer.Option(help="sensor: as a real camera sees it; clean: exact.")] = "sensor",
+    frames: Annotated[int | None, typer.Option(min=1, help="Write at most this many frames.")] = None,
+    fps: Annotated[float | None, typer.Option(help="Frames per second, the plan's unless given.")] = None,
+    every: Annotated[int, typer.Option(min=1, help="Keep only each n-th frame.")] = 1,
+    image_format: Annotated[str, typer.Option(help="jpg or png, of the colour images.")] = "jpg",
+    labels_every: Annotated[
+        int, typer.Option(min=0, help="Class and instance images with each n-th frame; 0: none.")
+    ] = 5,
+    workers: Annotated[int | None, typer.Option(min=1, help="Threads; at most 4 unless given.")] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier simulation in --out.")
+    ] = False,
+) -> None:
+    """Render a recorded sequence with exact ground truth from a plan of rooms."""
+    with told():
+        from vsgraphs.cli.make_sequence import make_sequence
+        from vsgraphs.simulate import Output
+
+        output = Output(
+            fps=fps,
+            every=every,
+            image_format=image_format,
+            labels_every=labels_every,
+            workers=workers,
+            overwrite=overwrite,
+        )
+        code = make_sequence(plan, out, seed=seed, noise=noise, frames=frames, output=output)
+    raise typer.Exit(code)
+
+
+@app.command()
 def config(
     search: Annotated[str | None, typer.Argument(help="Show only options whose key contains this.")] = None,
     as_yaml: Annotated[bool, typer.Option("--yaml", help="Print a file that `run --config` reads.")] = False,

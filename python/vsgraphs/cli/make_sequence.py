@@ -1,0 +1,58 @@
+"""`vsgraphs simulate`: a plan becomes a recorded sequence with exact truth."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+from vsgraphs.cli.interrupt import Interrupt
+from vsgraphs.cli.progress import Progress
+from vsgraphs.cli.session import Tally
+from vsgraphs.simulate import Output, simulate
+
+
+def make_sequence(plan: str, out: Path, *, seed: int, noise: str, frames: int | None, output: Output) -> int:
+    """Renders, shows how far it is, says what was written; returns the exit code. Raises InputError."""
+    began = time.monotonic()
+    bar = _Bar()
+    with Interrupt() as interrupt:
+        done = simulate(
+            plan,
+            out,
+            seed=seed,
+            noise=noise,
+            frames=frames,
+            progress=bar.show,
+            should_stop=interrupt.requested,
+            output=output,
+        )
+    bar.clear()
+    if not done.frames:
+        print("interrupted before the first frame: nothing was written", file=sys.stderr)
+        return interrupt.exit_code
+    if not done.complete:
+        print("interrupted: the frames so far are kept", file=sys.stderr)
+    took = time.monotonic() - began
+    print(
+        f"{done.frames} frames, {done.path_length_m:.2f} m of path in {done.folder} "
+        f"({took:.1f} s, {done.frames / took:.1f} frames/s)"
+    )
+    return interrupt.exit_code
+
+
+class _Bar:
+    """Progress of the rendering; the total is known from the first frame on."""
+
+    def __init__(self) -> None:
+        self._progress: Progress | None = None
+
+    def show(self, written: int, total: int) -> None:
+        """After each frame."""
+        self._progress = self._progress or Progress(total)
+        self._progress.frame(Tally(seen=written), "rendering")
+
+    def clear(self) -> None:
+        """Takes the bar away."""
+        if self._progress:
+            self._progress.clear()

@@ -1,0 +1,138 @@
+"""The Python API as a user meets it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+from layouts import Scene, write_tum
+
+import vsgraphs
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return Scene(frames=20, width=320, height=240, focal_px=300.0, shifts_px=[2 * i for i in range(20)])
+
+
+@pytest.fixture
+def camera(scene: Scene) -> vsgraphs.Camera:
+    return vsgraphs.Camera(320, 240, 300.0, 300.0, 159.5, 119.5, fps=10.0, depth_scale=5000.0)
+
+
+def test_the_example_runs(scene: Scene, tmp_path: Path) -> None:
+    folder = write_tum(tmp_path / "slide", scene)
+    command = [sys.executable, ROOT / "examples" / "track_folder.py", folder]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "20 of 20 frames tracked\nthe path ends at [0.25" in done.stdout
+
+
+@pytest.mark.parametrize("depth_in_metres", [False, True])
+@pytest.mark.parametrize("grey", [False, True])
+def test_track(scene: Scene, camera: vsgraphs.Camera, depth_in_metres: bool, grey: bool) -> None:
+    slam = vsgraphs.Slam(vsgraphs.Config(), camera)
+    for i in range(scene.frames):
+        rgb = np.ascontiguousarray(scene.rgb(i))
+        if grey:
+            rgb = np.ascontiguousarray(rgb[:, :, 1])
+        depth = scene.depth(i)
+        result = slam.track(
+            rgb, (depth / 5000).astype(np.float32) if depth_in_metres else depth, scene.stamp(i)
+        )
+        assert result.tracked
+        assert result.world_from_camera.shape == (4, 4)
+    slam.finish()
+    stamps, poses = slam.trajectory()
+    assert (stamps.shape, poses.shape, poses.dtype) == ((20,), (20, 4, 4), np.float64)
+    assert poses[-1, 0, 3] == pytest.approx(scene.pose(19)[0, 3], abs=0.01)
+    positions, colours = slam.snapshot().landmarks()
+    assert positions.shape == colours.shape
+    assert (positions.dtype, colours.dtype) == (np.float64, np.uint8)
+    ids, keyframe_stamps, keyframe_poses = slam.snapshot().keyframes()
+    assert len(ids) == len(keyframe_stamps) == len(keyframe_poses) >= 1
+
+
+def test_what_is_wrong_with_an_image_is_said(scene: Scene, camera: vsgraphs.Camera) -> None:
+    slam = vsgraphs.Slam(vsgraphs.Config(), camera)
+    rgb, depth = np.ascontiguousarray(scene.rgb(0)), scene.depth(0)
+    slam.track(rgb, depth, 1.0)
+    for bad_rgb, bad_depth, stamp, word in [
+        (rgb[:100], depth[:100], 2.0, "320"),
+        (rgb.astype(np.float32), depth, 2.0, "uint8"),
+        (rgb, depth.astype(np.float64), 2.0, "float32"),
+        (rgb, depth[:, :100], 2.0, "depth"),
+        (rgb[:, ::2], depth, 2.0, "rgb"),
+        (rgb, depth, 1.0, "timestamp"),
+        (rgb, depth, 0.5, "timestamp"),
+        (rgb, depth, float("nan"), "timestamp"),
+    ]:
+        with pytest.raises(vsgraphs.InputError, match=word) as caught:
+            slam.track(bad_rgb, bad_depth, stamp)
+        assert "\n" not in str(caught.value)
+    assert slam.track(rgb, depth, 2.0).tracked  # nothing was harmed
+
+
+def test_config_and_camera_mistakes(camera: vsgraphs.Camera) -> None:
+    config = vsgraphs.Config()
+    with pytest.raises(vsgraphs.InputError, match=r"system\.seed"):
+        config.set("sistem.seed", 3)
+    with pytest.raises(vsgraphs.InputError, match="fx"):
+        vsgraphs.Camera(640, 480, -1.0, 525.0, 319.5, 239.5)
+
+
+def test_tracking_releases_the_interpreter(scene: Scene, camera: vsgraphs.Camera) -> None:
+    slam = vsgraphs.Slam(vsgraphs.Config(), camera)
+    images = [np.ascontiguousarray(scene.rgb(i)) for i in range(5)]
+    ticks = 0
+    inside = threading.Event()
+    done = threading.Event()
+
+    def tick() -> None:
+        nonlocal ticks
+        while not done.is_set():
+            if inside.is_set():
+                ticks += 1
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(0.2)  # so that the thread can only count if the lock is let go
+    counter = threading.Thread(target=tick)
+    try:
+        counter.start()
+        inside.set()
+        for i, image in enumerate(images):
+            slam.track(image, scene.depth(i), scene.stamp(i))
+        inside.clear()
+    finally:
+        done.set()
+        sys.setswitchinterval(interval)
+        counter.join()
+    assert ticks > 100
+
+
+def test_names_are_listed_and_typed() -> None:
+    assert set(vsgraphs.__all__) <= set(dir(vsgraphs))
+    for name in vsgraphs.__all__:
+        assert getattr(vsgraphs, name) is not None
+    assert (Path(vsgraphs.__file__).parent / "py.typed").exists()
+    with pytest.raises(AttributeError, match="no attribute 'Slamm'"):
+        vsgraphs.Slamm  # noqa: B018
+
+
+def loaded_by(statement: str, *modules: str) -> list[str]:
+    code = f"{statement}; import sys; print(*[m for m in {modules} if m in sys.modules])"
+    return subprocess.check_output([sys.executable, "-c", code], text=True).split()
+
+
+def test_importing_the_package_loads_nothing_heavy() -> None:
+    assert loaded_by("import vsgraphs", "numpy", "vsgraphs._core", "matplotlib") == []
+
+
+def test_running_does_not_load_what_only_other_commands_need() -> None:
+    assert loaded_by("import vsgraphs.cli.run, vsgraphs.cli.results", "matplotlib", "rich", "typer") == []
