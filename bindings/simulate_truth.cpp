@@ -1,0 +1,159 @@
+#include "bindings/simulate_truth.h"
+
+#include <nanobind/stl/string.h>
+
+#include <cmath>
+
+namespace nb = nanobind;
+
+namespace vsgraphs {
+namespace {
+
+// Nanometres and 1e-9 of a unit normal: drops the dust of floating point, and -0.
+double tidy(double x) { return std::round(x * 1e9) / 1e9 + 0.0; }
+
+nb::list numbers(std::initializer_list<double> values) {
+  nb::list out;
+  for (const double v : values) out.append(tidy(v));
+  return out;
+}
+
+template <typename Index>
+const auto& item(const auto& list, Index i) {
+  return list[static_cast<std::size_t>(i)];
+}
+
+nb::dict room_truth(const Scene& scene, const ObservationCounter& seen, std::size_t r) {
+  const RoomPlan& plan = scene.plan.rooms[r];
+  const RoomGeometry& geometry = scene.rooms[r];
+  const Eigen::Vector2d c = centroid(plan.polygon);
+  nb::dict d;
+  nb::list polygon, walls;
+  for (const auto& p : plan.polygon) polygon.append(numbers({p.x(), p.y()}));
+  for (const int w : geometry.walls) walls.append(w);
+  d["id"] = plan.id;
+  d["polygon"] = polygon;
+  d["centroid"] = numbers({c.x(), c.y(), plan.z_floor});
+  d["area"] = tidy(signed_area(plan.polygon));
+  d["level"] = plan.level;
+  d["z_floor"] = plan.z_floor;
+  d["height"] = plan.height;
+  d["counted"] = plan.counted;
+  d["kind"] = plan.kind;
+  d["walls"] = walls;
+  d["floor_inst"] = geometry.floor_instance;
+  d["ceiling_inst"] = geometry.ceiling_instance;
+  d["visited"] = seen.visited(static_cast<int>(r));
+  d["floor_observed_frames"] = seen.frames_seen(geometry.floor_instance);
+  return d;
+}
+
+nb::dict wall_truth(const Scene& scene, const ObservationCounter& seen, std::size_t index) {
+  const WallGeometry& w = scene.walls[index];
+  nb::dict d;
+  d["id"] = index;
+  d["inst"] = w.instance;
+  d["room"] = item(scene.plan.rooms, w.room).id;
+  d["side"] = w.side;
+  d["p0"] = numbers({w.p0.x(), w.p0.y(), w.z_floor});
+  d["p1"] = numbers({w.p1.x(), w.p1.y(), w.z_floor});
+  d["length"] = tidy(w.length);
+  d["height"] = w.height;
+  d["n"] = numbers({w.normal.x(), w.normal.y(), 0});
+  d["d"] = tidy(-w.normal.dot(w.p0));
+  d["area"] = tidy(w.area());
+  d["counted"] = item(scene.plan.rooms, w.room).counted;
+  d["observed_frames"] = seen.frames_seen(w.instance);
+  d["observed_mean_px_share"] = std::round(seen.mean_share(w.instance) * 1e5) / 1e5;
+  d["observed"] = seen.observed(w.instance);
+  return d;
+}
+
+nb::dict door_truth(const Scene& scene, std::size_t index) {
+  const DoorGeometry& door = scene.doors[index];
+  nb::dict d;
+  nb::list rooms;
+  for (const int r : door.rooms) rooms.append(item(scene.plan.rooms, r).id);
+  d["id"] = index;
+  d["inst"] = door.instance;
+  d["rooms"] = rooms;
+  d["center"] = numbers({door.center.x(), door.center.y(), door.z});
+  d["width"] = door.width;
+  d["height"] = door.height;
+  d["normal"] = numbers({door.normal.x(), door.normal.y(), 0});
+  if (const auto& leaf = scene.plan.doors[index].leaf) {
+    nb::dict l;
+    l["inst"] = door.leaf_instance;
+    l["room"] = leaf->room;
+    l["angle_deg"] = leaf->angle_deg;
+    d["leaf"] = l;
+  }
+  return d;
+}
+
+nb::dict window_truth(const Scene& scene, std::size_t index) {
+  const WindowGeometry& w = scene.windows[index];
+  nb::dict d;
+  d["id"] = index;
+  d["inst"] = w.instance;
+  d["room"] = item(scene.plan.rooms, w.room).id;
+  d["center"] = numbers({w.center.x(), w.center.y(), w.center.z()});
+  d["width"] = w.width;
+  d["height"] = w.height;
+  return d;
+}
+
+nb::dict instance_truth(const Scene& scene, std::size_t index) {
+  const Instance& instance = scene.instances[index];
+  nb::dict d;
+  d["id"] = index;
+  d["cls"] = std::string(scene_class_names[static_cast<std::size_t>(instance.label)]);
+  if (!instance.room.empty()) d["room"] = instance.room;
+  if (instance.side >= 0) d["side"] = instance.side;
+  if (instance.door >= 0) d["door"] = instance.door;
+  if (!instance.kind.empty()) d["kind"] = instance.kind;
+  return d;
+}
+
+nb::dict level_plane(const Scene& scene, std::size_t r, bool ceiling) {
+  const RoomPlan& plan = scene.plan.rooms[r];
+  nb::dict d;
+  d["inst"] = ceiling ? scene.rooms[r].ceiling_instance : scene.rooms[r].floor_instance;
+  d["room"] = plan.id;
+  if (!ceiling) d["level"] = plan.level;
+  d["n"] = numbers({0, 0, ceiling ? -1.0 : 1.0});
+  d["d"] = tidy(ceiling ? plan.z_floor + plan.height : -plan.z_floor);
+  return d;
+}
+
+template <typename Make>
+nb::list listed(std::size_t count, const Make& make) {
+  nb::list out;
+  for (std::size_t i = 0; i < count; ++i) out.append(make(i));
+  return out;
+}
+
+}  // namespace
+
+nb::dict scene_truth(const Scene& scene, const ObservationCounter& seen) {
+  nb::dict d;
+  d["rooms"] = listed(scene.rooms.size(), [&](std::size_t i) { return room_truth(scene, seen, i); });
+  d["walls"] = listed(scene.walls.size(), [&](std::size_t i) { return wall_truth(scene, seen, i); });
+  d["floors"] = listed(scene.rooms.size(), [&](std::size_t i) { return level_plane(scene, i, false); });
+  d["ceilings"] = listed(scene.rooms.size(), [&](std::size_t i) { return level_plane(scene, i, true); });
+  d["doors"] = listed(scene.doors.size(), [&](std::size_t i) { return door_truth(scene, i); });
+  d["windows"] = listed(scene.windows.size(), [&](std::size_t i) { return window_truth(scene, i); });
+  d["instances"] = listed(scene.instances.size(), [&](std::size_t i) { return instance_truth(scene, i); });
+  nb::dict classes;
+  for (std::size_t i = 0; i < scene_class_names.size(); ++i)
+    classes[std::string(scene_class_names[i]).c_str()] = i;
+  d["classes"] = classes;
+  d["adjacency"] = listed(scene.doors.size(), [&](std::size_t i) {
+    nb::list rooms;
+    for (const int r : scene.doors[i].rooms) rooms.append(item(scene.plan.rooms, r).id);
+    return rooms;
+  });
+  return d;
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,12 @@
+// The truth of a simulated scene as Python values.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include "core/simulate/truth.h"
+
+namespace vsgraphs {
+
+nanobind::dict scene_truth(const Scene& scene, const ObservationCounter& seen);
+
+}  // namespace vsgraphs

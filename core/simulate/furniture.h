@@ -1,0 +1,37 @@
+// Internal to core/simulate: the kinds of furniture and how each is put together.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/simulate/scene_builder.h"
+
+namespace vsgraphs {
+
+// One piece being built, in its own frame: x to the right of somebody behind it, y to its front, z up; the origin is the
+// middle of its footprint.
+struct Piece {
+  SceneBuilder& builder;
+  Tag tag;
+  Stand stand;
+  double w, d, h;  // half width, half depth, height
+  Rgb colour;
+  std::uint64_t seed;
+
+  void box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Material& material,
+           unsigned sides = all_sides, const std::optional<Material>& front = std::nullopt) {
+    builder.add_box(tag, stand, low, high, material, sides, front);
+  }
+  Material plain(const char* kind = "lacquer") const { return {kind, 7, colour}; }
+};
+
+struct FurnitureKind {
+  const char* name;
+  SceneClass label;
+  Rgb colour;  // where the plan gives none
+  void (*build)(Piece&);
+};
+
+std::span<const FurnitureKind> furniture_table();
+
+}  // namespace vsgraphs

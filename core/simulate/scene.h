@@ -1,0 +1,151 @@
+// A plan turned into surfaces to look at, things to bump into and the truth to score against. World: z up, metres.
+// A scene owns everything it needs and does not change once built; it may be shared by renderers.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/simulate/camera_path.h"
+#include "core/simulate/materials.h"
+#include "core/simulate/plan.h"
+
+namespace vsgraphs {
+
+// Values of the class images; the order is the file format.
+enum class SceneClass : std::uint8_t {
+  none,
+  wall,
+  floor,
+  ceiling,
+  door,
+  window,
+  table,
+  chair,
+  sofa,
+  bed,
+  cabinet,
+  picture,
+  curtain,
+  plant,
+  lamp,
+  rug,
+  misc,
+  screen,
+  radiator,
+  stairs
+};
+inline constexpr std::array<std::string_view, 20> scene_class_names{
+    "void",    "wall",    "floor",   "ceiling", "door", "window", "table", "chair",  "sofa",     "bed",
+    "cabinet", "picture", "curtain", "plant",   "lamp", "rug",    "misc",  "screen", "radiator", "stairs"};
+
+// Light falling on a face, on a grid over its bounding rectangle; blended bilinearly. 1 = the nominal brightness.
+struct Lightmap {
+  int width = 1, height = 1;
+  float nodes_per_s = 0, nodes_per_t = 0;  // grid steps per metre
+  std::vector<float> light{1.0f};
+};
+
+// A flat surface seen from one side. Points: origin + s * s_axis + t * t_axis, (s, t) in metres.
+struct Face {
+  Eigen::Vector3d origin, s_axis, t_axis;  // the axes are orthonormal
+  std::vector<Polygon2>
+      contours;          // in (s, t), s and t >= 0; covered by the even-odd rule, so holes are contours too
+  Eigen::Vector2d size;  // of the bounding rectangle from (0, 0)
+  int material = 0;
+  Eigen::Vector2d repeats_per_m{1, 1};   // texture repeats per metre of s and t
+  Eigen::Vector2d texture_offset{0, 0};  // repeats
+  float emission = 0;                    // > 0: shines by itself, not lit by the room
+  SceneClass label = SceneClass::none;
+  std::uint16_t instance = 0;
+  int room = -1;  // hidden when this room cannot be seen; -1: never hidden
+  Lightmap lightmap;
+
+  Eigen::Vector3d normal() const { return s_axis.cross(t_axis); }
+};
+
+struct
+    Instance {  // what one value of the instance images stands for; the index in Scene::instances is the value
+  SceneClass label = SceneClass::none;
+  std::string room, kind;  // empty where it does not apply
+  int side = -1, door = -1;
+};
+
+struct Opening {  // a hole in a wall, (along, height) relative to the wall's p0 and its room's floor
+  double along_min, along_max, z_min, z_max;
+};
+
+struct WallGeometry {
+  int room = 0, side = 0;
+  Eigen::Vector2d p0, p1;  // counter-clockwise along the room
+  Eigen::Vector2d along;   // unit, p0 to p1
+  Eigen::Vector2d normal;  // unit, into the room
+  double length = 0, z_floor = 0, height = 0;
+  std::uint16_t instance = 0;
+  std::vector<Opening> openings;
+  double area() const;  // without the openings
+};
+
+struct RoomGeometry {
+  std::vector<int> walls;
+  std::uint16_t floor_instance = 0, ceiling_instance = 0;
+};
+
+struct DoorGeometry {
+  std::array<int, 2> rooms{}, walls{};
+  Eigen::Vector2d center;  // middle of the passage, half-way through the wall
+  Eigen::Vector2d normal;  // of the first room's wall, into the first room
+  double thickness = 0;    // of the wall between
+  double z = 0, width = 0, height = 0;
+  std::uint16_t instance = 0, leaf_instance = 0;
+};
+
+struct WindowGeometry {
+  int room = 0;
+  Eigen::Vector3d center;
+  double width = 0, height = 0;
+  std::uint16_t instance = 0;
+};
+
+// Something solid the camera must not enter: a box turned about the vertical.
+struct Solid {
+  Eigen::Vector2d center, half;
+  double yaw_rad = 0, z_min = 0, z_max = 0;
+  std::string name;  // for messages, e.g. "boxes[3] (bookshelf)"
+};
+
+struct Light {
+  Eigen::Vector3d position, direction;  // direction: where it shines, unit
+  double power = 1;
+  int room = 0;
+};
+
+struct Scene {
+  Plan plan;
+  std::vector<Face> faces;
+  std::vector<MaterialStore::Entry> materials;
+  std::vector<Instance> instances;
+  std::vector<RoomGeometry> rooms;  // in the plan's order, as are doors and windows
+  std::vector<WallGeometry> walls;
+  std::vector<DoorGeometry> doors;
+  std::vector<WindowGeometry> windows;
+  std::vector<Solid> solids;
+  std::vector<Light> lights;
+  CameraPath path;
+
+  int frame_count() const { return path.frame_count(plan.fps); }
+};
+
+// Throws InputError naming the plan's field when the plan cannot be built or walked. Deterministic. Takes well under a
+// second for a few rooms.
+Scene build_scene(const Plan& plan);
+
+// Names a plan may use, for checks and suggestions.
+std::vector<std::string> furniture_kinds();
+std::vector<std::string> poster_kinds();
+std::vector<std::string> floor_kinds();
+
+}  // namespace vsgraphs

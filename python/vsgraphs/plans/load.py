@@ -1,0 +1,76 @@
+"""Plan files to the core's plan. Errors are one line: file, key, what is wrong, what would be right."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from vsgraphs.errors import InputError
+from vsgraphs.plans.reader import Reader
+from vsgraphs.plans.rotate import rotate
+from vsgraphs.plans.schema import EXTRA_KEYS, PLAN
+
+_FOLDER = Path(__file__).parent
+
+
+@dataclass(frozen=True)
+class LoadedPlan:
+    """A plan ready for `vsgraphs._core.build_scene`, its name for messages, and the camera it asks for."""
+
+    plan: Any  # vsgraphs._core.Plan
+    source: str
+    camera: dict[str, float]  # width, height, fx, fy, cx, cy as far as the plan gives them
+
+
+def plan_names() -> list[str]:
+    """The included plans, in alphabetical order."""
+    return sorted(path.stem for path in _FOLDER.glob("*.json"))
+
+
+def load_plan(source: str | Path | Mapping[str, Any]) -> LoadedPlan:
+    """Reads a plan file, an included plan by name, or a plan given as nested dicts.
+
+    Raises InputError naming the file and the key for anything that does not fit the format. Whether the place
+    can be built and walked is `build_scene`'s to say.
+    """
+    if isinstance(source, Mapping):
+        return _convert(dict(source), "plan", None)
+    path = Path(source)
+    if not path.suffix and not path.exists():
+        path = _FOLDER / f"{path.name}.json" if path.name == str(source) else path
+        if not path.is_file():
+            near = get_close_matches(str(source), plan_names(), n=1, cutoff=0.5)
+            hint = f"did you mean '{near[0]}'?" if near else f"included plans: {', '.join(plan_names())}"
+            raise InputError(f"there is no plan '{source}'; {hint}")
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read plan {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"plan {path} is not text; expected JSON") from None
+    try:
+        values = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}:{error.lineno}: not valid JSON: {error.msg}") from None
+    except RecursionError:
+        raise InputError(f"{path}: nested too deeply for a plan") from None
+    return _convert(values, str(path), path.stem)
+
+
+def _convert(values: object, source: str, name: str | None) -> LoadedPlan:
+    if not isinstance(values, dict):
+        raise InputError(f'{source}: expected an object {{"rooms": [...], "path": {{...}}}}')
+    reader = Reader(source)
+    rotation = reader.number(values.get("rotate_deg", 0), "rotate_deg")
+    camera = reader.camera(values.get("camera", {}))
+    plan = reader.table(PLAN, {k: v for k, v in values.items() if k not in EXTRA_KEYS}, "", EXTRA_KEYS)
+    if not plan.name:
+        plan.name = name or "plan"
+    if rotation:
+        rotate(plan, math.radians(rotation))
+    return LoadedPlan(plan, source, camera)

@@ -1,0 +1,6 @@
+"""A plan becomes a recorded sequence: TUM RGB-D layout plus exact truth; see `docs/simulator.md`."""
+
+from vsgraphs.simulate.options import NOISE, Output
+from vsgraphs.simulate.run import Simulation, simulate
+
+__all__ = ["NOISE", "Output", "Simulation", "simulate"]

@@ -1,0 +1,45 @@
+"""A folder that appears whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+from pathlib import Path
+
+from vsgraphs.errors import InputError
+
+MARK = "scene_gt.json"  # written last: a folder that has it is one of ours, and whole
+
+
+class FolderInTheMaking:
+    """A folder under construction beside its final place; renamed when whole, removed otherwise."""
+
+    def __init__(self, final: Path, *, overwrite: bool) -> None:
+        self._final = final
+        self.path = final.with_name(f".{final.name}.{os.getpid()}.part")
+        if final.exists() and not final.is_dir():
+            raise InputError(f"output {final} is a file; give a directory")
+        if final.is_dir() and any(final.iterdir()) and not (overwrite and (final / MARK).is_file()):
+            raise InputError(
+                f"output {final} is not empty; choose another directory"
+                + ("" if overwrite else ", or allow overwriting if it is an older simulation")
+            )
+
+    def __enter__(self) -> FolderInTheMaking:
+        try:
+            self._final.parent.mkdir(parents=True, exist_ok=True)
+            self.path.mkdir()
+        except OSError as error:
+            raise InputError(f"cannot create {self._final}: {error.strerror or error}") from None
+        return self
+
+    def keep(self) -> None:
+        """Puts the folder in its place."""
+        if self._final.is_dir():
+            shutil.rmtree(self._final)
+        self.path.replace(self._final)
+
+    def __exit__(self, *_: object) -> None:
+        with contextlib.suppress(OSError):
+            shutil.rmtree(self.path)
