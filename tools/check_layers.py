@@ -76,7 +76,7 @@ WORD_RULES = (
     _rule(r"\bthread_local\b", "system base", "threads stay in core/system and core/base", in_tests=False),
     _rule(
         r"\bnew\b\s*[\w:(]|\bdelete\b\s*(?:\[\s*\])?\s*[\w(*]", "",
-        "no naked new or delete", in_tests=False,
+        "no naked new or delete", in_tests=True,
     ),
 )  # fmt: skip
 
