@@ -6,8 +6,8 @@
     benchmarks/run_sequences.py DATA/* --vsgraphs old/bin/vsgraphs --compare new/bin/vsgraphs
 
 Each run is a process of its own, so that its figures are those of `vsgraphs run`. Two installs are run in
-turns (A B A B ...) with the same seeds, so that whatever else the machine does hits both; the table then holds
-medians of the ratios of each pair, B / A. Measure on a quiet machine.
+turns (A B A B ...) with the same seeds, so that whatever else the machine does hits both; the table then
+holds medians of the ratios of each pair, B / A. Measure on a quiet machine.
 """
 
 from __future__ import annotations

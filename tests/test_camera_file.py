@@ -19,7 +19,8 @@ def written(tmp_path: Path, text: str) -> Path:
 def test_everything_read(tmp_path: Path) -> None:
     text = GOOD + (
         "distortion: [0.1, -0.2, 0.001, 0.002]\nfps: 10.0\ndepth_min: 0.35\ndepth_max: 6.0\n"
-        "invalid_depth: [0, 65535, 7]\ndepth_noise: [0.001, 0.002, 0.4]\nsource: somewhere\nlicence: CC\n"
+        "invalid_depth: [0, 65535, 7]\ndepth_noise: [0.001, 0.002, 0.4]\n"
+        "depth_alignment_m: 0.01\nsource: somewhere\nlicence: CC\n"
         "rgb_depth_registered: false\nbaseline_for_bf: 0.075\nbf: 39.375\n"
     )
     camera, remarks = read_camera_file(written(tmp_path, text))
@@ -27,6 +28,7 @@ def test_everything_read(tmp_path: Path) -> None:
     assert (camera.fps, camera.depth_min_m, camera.depth_max_m) == (10.0, 0.35, 6.0)
     assert camera.invalid_depth == (0, 65535, 7)
     assert camera.depth_noise == (0.001, 0.002, 0.4)
+    assert camera.depth_alignment_m == 0.01
     assert (camera.width, type(camera.width)) == (640, int)
     assert remarks == []
 
@@ -86,3 +88,10 @@ def test_missing_and_binary_files(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xd8\xff\xe0" * 10)
     with pytest.raises(InputError, match="is not text"):
         read_camera_file(path)
+
+
+def test_a_negative_focal_length_only_where_the_dataset_publishes_one(tmp_path: Path) -> None:
+    path = written(tmp_path, GOOD.replace("fy: 525.0", "fy: -480.0"))
+    with pytest.raises(InputError, match=r"fy is -480\.0, must be positive"):
+        read_camera_file(path)
+    assert read_camera_file(path, y_up=True)[0].fy == 480.0

@@ -77,6 +77,15 @@ def test_icl_nuim(tmp_path: Path) -> None:
     np.testing.assert_allclose(truth.poses[0][:3, :3], [[1, 0, 0], [0, c, s], [0, -s, c]], atol=1e-12)
 
 
+def test_icl_nuim_with_a_camera_file_of_the_published_sign(tmp_path: Path) -> None:
+    folder = write_icl(tmp_path / "lr_kt2")
+    text = "width: 640\nheight: 480\nfx: 481.2\nfy: -480\ncx: 319.5\ncy: 239.5\ndepth_scale: 5000\n"
+    (folder / "camera.yaml").write_text(text)
+    sequence = open_sequence(folder)
+    assert (sequence.calibration.fy, sequence.calibration.origin) == (480.0, "camera.yaml")
+    assert "y down" in sequence.warnings[0]
+
+
 def test_icl_nuim_without_truth_is_told_from_tum_by_its_frame_numbers(tmp_path: Path) -> None:
     folder = write_icl(tmp_path / "lr_kt2")
     (folder / "livingRoom2.gt.freiburg").unlink()

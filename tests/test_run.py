@@ -10,13 +10,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
+import fake_core
 import numpy as np
 import pytest
 from conftest import Program
 from layouts import Scene, save, write_tum
 from PIL import Image
 
+from vsgraphs.cli.run import RunRequest, run_sequence
 from vsgraphs.trajectory import read_tum_trajectory
 
 OUTPUTS = ("trajectory.txt", "keyframes.txt", "map.ply", "run.json", "timeline.json")
@@ -310,6 +313,26 @@ def test_black_for_three_seconds_and_back(tmp_path: Path, vsgraphs: Program) -> 
     assert np.count_nonzero(after) >= 25
     expected = truth.positions[-np.count_nonzero(after) :]
     assert np.abs(trajectory.positions[after] - expected).max() < 0.03
+
+
+def test_a_defect_of_ours_keeps_what_was_tracked(
+    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Breaking(fake_core.Slam):
+        def track(self, rgb: np.ndarray, depth: np.ndarray, timestamp: float) -> fake_core.Result:
+            if self.seen == 10:
+                raise RuntimeError("invariant")
+            return super().track(rgb, depth, timestamp)
+
+    core = SimpleNamespace(
+        Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=lambda config, camera: Breaking()
+    )
+    monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
+    monkeypatch.setattr("vsgraphs.cli.results.core", lambda: core)
+    with pytest.raises(RuntimeError, match="invariant"):
+        run_sequence(RunRequest(recorded, tmp_path))
+    assert report(tmp_path)["tracked"] == 10
+    assert len(read_tum_trajectory(tmp_path / "trajectory.txt")) == 10
 
 
 def test_version_and_help(vsgraphs: Program) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
@@ -18,32 +19,51 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from vsgraphs.cli.run import RunOutcome
+    from vsgraphs.cli.session import Tally
+    from vsgraphs.datasets import RecordedSequence
+
+
+@dataclass
+class RunOutcome:
+    """A finished run, before it is written."""
+
+    out: Path
+    sequence: RecordedSequence
+    config: Any
+    slam: Any
+    tally: Tally
+    frames: int
+    wall_s: float
+    startup_s: float | None
 
 
 def write_results(outcome: RunOutcome) -> dict[str, Any]:
-    """Writes all files, the small ones first; returns run.json's content.
+    """Writes all files, the trajectory first; returns run.json's content.
 
     When one cannot be written the others are still tried; then InputError names all that are missing.
     """
-    out = outcome.request.out
     slam = outcome.slam
     snapshot = slam.snapshot()
     stamps, poses = slam.trajectory()
     _, keyframe_stamps, keyframe_poses = snapshot.keyframes()
     positions, colours = snapshot.landmarks()
-    report = run_report(outcome, len(stamps), len(keyframe_stamps), len(positions))
+    report: dict[str, Any] = {}
+
+    def figures() -> str:  # last, so that CPU and memory are those of the whole process
+        report.update(run_report(outcome, len(stamps), len(keyframe_stamps), len(positions)))
+        return json.dumps(report, indent=1) + "\n"
+
     contents: dict[str, Callable[[], str | bytes]] = {
         "trajectory.txt": lambda: format_tum(stamps, poses),
         "keyframes.txt": lambda: format_tum(keyframe_stamps, keyframe_poses),
-        "run.json": lambda: json.dumps(report, indent=1) + "\n",
         "map.ply": lambda: format_ply(positions, colours),
         "timeline.json": lambda: format_timeline(_spans(outcome)),
+        "run.json": figures,
     }
     failures = []
     for name, content in contents.items():
         try:
-            write_atomically(out / name, content())
+            write_atomically(outcome.out / name, content())
         except InputError as error:
             failures.append((name, str(error)))
     if failures:
@@ -65,7 +85,7 @@ def run_report(outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int
         "landmarks": landmarks,
         "wall_s": outcome.wall_s,
         "waited_s": float(statistics["waited_s"]),
-        "cpu_s": outcome.cpu_s,
+        "cpu_s": measures.cpu_s(),
         "fps": processed / outcome.wall_s if outcome.wall_s > 0 else 0.0,
         "peak_memory_mb": measures.peak_memory_mb(),
         "startup_s": outcome.startup_s,

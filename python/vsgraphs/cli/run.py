@@ -12,6 +12,7 @@ from vsgraphs.cli import measures
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
 from vsgraphs.cli.progress import Progress
+from vsgraphs.cli.results import RunOutcome, summarise, write_results
 from vsgraphs.cli.session import Session, Tally
 from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
 from vsgraphs.datasets import RecordedSequence, open_sequence
@@ -34,21 +35,6 @@ class RunRequest:
     shortcuts: dict[str, Value] = field(default_factory=dict)
 
 
-@dataclass
-class RunOutcome:
-    """A finished run, before it is written."""
-
-    request: RunRequest
-    sequence: RecordedSequence
-    config: Any
-    slam: Any
-    tally: Tally
-    frames: int
-    wall_s: float
-    cpu_s: float
-    startup_s: float | None
-
-
 def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
     sequence = open_sequence(request.source, request.camera)
@@ -62,26 +48,43 @@ def run_sequence(request: RunRequest) -> int:
 
         config = make_config(core(), request)
         slam = core().Slam(config, sequence.camera)
-        progress = Progress(len(frames))
         with Interrupt() as interrupt:
+            progress = Progress(len(frames))
             pacing = Realtime(interrupt.requested) if request.realtime else AsFastAsPossible()
             stamps = [frame.timestamp for frame in frames]
             session = Session(slam, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
-            tally = session.run()
+            failure = _attempt(session)
             loaded.close()
             progress.clear()
-            if tally.interrupted:
+            if session.tally.interrupted:
                 print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
             slam.finish()
-            outcome = _outcome(request, sequence, config, slam, tally, began)
-            from vsgraphs.cli.results import summarise, write_results
-
-            written = write_results(outcome)
-    if not len(slam.trajectory()[0]) and not tally.interrupted:
-        raise InputError(nothing_tracked(request.source, tally))
-    print(summarise(written, request.out))
+            report = _write(_outcome(request, sequence, config, slam, session.tally, began), failure)
+    if failure is not None:
+        raise failure
+    if not report["tracked"] and not session.tally.interrupted:
+        raise InputError(nothing_tracked(request.source, session.tally))
+    print(summarise(report, request.out))
     return interrupt.exit_code
+
+
+def _attempt(session: Session) -> Exception | None:
+    """Runs the session; hands back an unexpected error: what was tracked before is worth keeping."""
+    try:
+        session.run()
+    except Exception as error:
+        return error
+    return None
+
+
+def _write(outcome: RunOutcome, failure: Exception | None) -> dict[str, Any]:
+    try:
+        return write_results(outcome)
+    except Exception:
+        if failure is not None:  # the first trouble is the one to tell
+            raise failure from None
+        raise
 
 
 def make_config(core: Any, request: RunRequest) -> Any:
@@ -113,13 +116,12 @@ def _outcome(
     first = tally.first_tracked_at
     whole = request.max_frames is None and not tally.interrupted
     return RunOutcome(
-        request,
+        request.out,
         sequence,
         config,
         slam,
         tally,
         frames=tally.seen + (sum(sequence.skipped.values()) if whole else 0),
         wall_s=time.monotonic() - began,
-        cpu_s=measures.cpu_s(),
         startup_s=None if first is None else first - started,
     )

@@ -42,7 +42,10 @@ def _print_table(options: list[dict[str, Any]]) -> None:
     table = Table("option", "default", "range", "meaning", box=None, header_style="bold")
     for option in options:
         table.add_row(option["key"], _text(option["default"]), _range(option, ""), option["meaning"])
-    Console().print(table)
+    console = Console()
+    if not console.is_terminal:  # in a pipe nobody sees the width: keep each option on a line
+        console = Console(width=240)
+    console.print(table)
 
 
 def _range(option: dict[str, Any], before: str) -> str:

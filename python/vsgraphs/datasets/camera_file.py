@@ -3,18 +3,18 @@
 Required: width, height (pixels), fx, fy, cx, cy (pixels; pixel centres at integers). Optional: distortion
 ([k1, k2, p1, p2, k3] or those names one by one), fps, depth_scale (raw units per metre, 5000 as in TUM
 where not given), depth_min, depth_max (metres), invalid_depth (raw values), depth_noise ([offset_m,
-scale_per_m, onset_m]). A key that looks like a misspelt one is an error; keys that only describe (source,
-licence, ...) are accepted.
+scale_per_m, onset_m]), depth_alignment_m. A key that looks like a misspelt one is an error; keys that only
+describe (source, licence, ...) are accepted.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from vsgraphs.datasets.calibration import Calibration, check_calibration
 from vsgraphs.errors import InputError
 
 _INTEGERS = ("width", "height")
@@ -30,6 +30,7 @@ _NUMBERS = (
     "depth_max",
     "depth_min_m",
     "depth_max_m",
+    "depth_alignment_m",
 )
 _LENS = ("k1", "k2", "p1", "p2", "k3")
 _LISTS = ("distortion", "invalid_depth", "depth_noise")
@@ -61,49 +62,11 @@ _DESCRIPTIVE = frozenset(
 _KNOWN = (*_INTEGERS, *_NUMBERS, *_LENS, *_LISTS)
 
 
-@dataclass(frozen=True)
-class Calibration:
-    """Camera and depth sensor, the fields of `vsgraphs.Camera`; `origin` says where it comes from."""
+def read_camera_file(path: Path, *, y_up: bool = False) -> tuple[Calibration, list[str]]:
+    """Reads and checks a camera.yaml. Returns the calibration and remarks worth telling.
 
-    width: int
-    height: int
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    fps: float = 30.0
-    depth_scale: float = 5000.0
-    depth_min_m: float = 0.3
-    depth_max_m: float = 8.0
-    invalid_depth: tuple[int, ...] = (0, 65535)
-    depth_noise: tuple[float, float, float] | None = None
-    origin: str = "built in"
-
-    def to_core(self) -> Any:
-        """The `vsgraphs.Camera` of these numbers (loads the compiled module)."""
-        from vsgraphs.compiled import core
-
-        optional = {} if self.depth_noise is None else {"depth_noise": self.depth_noise}
-        return core().Camera(
-            self.width,
-            self.height,
-            self.fx,
-            self.fy,
-            self.cx,
-            self.cy,
-            distortion=self.distortion,
-            fps=self.fps,
-            depth_scale=self.depth_scale,
-            depth_min_m=self.depth_min_m,
-            depth_max_m=self.depth_max_m,
-            invalid_depth=list(self.invalid_depth),
-            **optional,
-        )
-
-
-def read_camera_file(path: Path) -> tuple[Calibration, list[str]]:
-    """Reads and checks a camera.yaml. Returns the calibration and remarks worth telling."""
+    y_up: a negative fy is how this dataset publishes its camera (ICL-NUIM); its size is taken.
+    """
     values = _parse(path)
     remarks = _check_keys(path, values)
     missing = [key for key in _REQUIRED if key not in values]
@@ -118,6 +81,8 @@ def read_camera_file(path: Path) -> tuple[Calibration, list[str]]:
         if numbers[key] != int(numbers[key]):
             raise InputError(f"{path}: {key} is {numbers[key]}, expected whole pixels")
         fields[key] = int(numbers[key])
+    if y_up:
+        fields["fy"] = abs(fields["fy"])
     fields["distortion"] = _distortion(path, values)
     if "invalid_depth" in values:
         fields["invalid_depth"] = _invalid_depth(path, values["invalid_depth"])
@@ -128,22 +93,6 @@ def read_camera_file(path: Path) -> tuple[Calibration, list[str]]:
     calibration = Calibration(**fields, origin=path.name)
     check_calibration(calibration, str(path))
     return calibration, remarks
-
-
-def check_calibration(camera: Calibration, source: str) -> None:
-    """Raises InputError naming the first field that makes no sense."""
-    for key in ("width", "height", "fx", "fy", "fps", "depth_scale", "depth_max_m"):
-        if not getattr(camera, key) > 0:
-            raise InputError(f"{source}: {key} is {getattr(camera, key)}, must be positive")
-    if camera.width > 16384 or camera.height > 16384:
-        raise InputError(f"{source}: {camera.width}x{camera.height} pixels is larger than any camera")
-    if not (0 <= camera.cx < camera.width and 0 <= camera.cy < camera.height):
-        raise InputError(f"{source}: cx, cy = {camera.cx}, {camera.cy} lies outside the image")
-    if not 0 <= camera.depth_min_m < camera.depth_max_m:
-        raise InputError(
-            f"{source}: depth_min {camera.depth_min_m} m must be at least 0 and below depth_max "
-            f"{camera.depth_max_m} m"
-        )
 
 
 def _parse(path: Path) -> dict[str, Any]:

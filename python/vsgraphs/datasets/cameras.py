@@ -12,7 +12,8 @@ from __future__ import annotations
 from difflib import get_close_matches
 from pathlib import Path
 
-from vsgraphs.datasets.camera_file import Calibration, read_camera_file
+from vsgraphs.datasets.calibration import Calibration
+from vsgraphs.datasets.camera_file import read_camera_file
 from vsgraphs.errors import InputError
 
 CAMERAS: dict[str, Calibration] = {
@@ -88,20 +89,24 @@ def camera_from_folder_name(folder: Path) -> Calibration | None:
 
 
 def choose_camera(
-    folder: Path, given: str | Path | Calibration | None, default: Calibration | None
+    folder: Path,
+    given: str | Path | Calibration | None,
+    default: Calibration | None,
+    *,
+    y_up: bool = False,
 ) -> tuple[Calibration, list[str]]:
     """The camera of a sequence, and remarks worth telling.
 
     What the user gave (file or name), else camera.yaml in the folder, else `default`, else what the folder's
-    name points to. Raises InputError when none of these is there.
+    name points to. Raises InputError when none of these is there. y_up: see `read_camera_file`.
     """
     if isinstance(given, Calibration):
         return given, []
     if given is not None:
-        return _given_camera(str(given))
+        return _given_camera(str(given), y_up=y_up)
     for name in ("camera.yaml", "camera.yml"):
         if (folder / name).is_file():
-            return read_camera_file(folder / name)
+            return read_camera_file(folder / name, y_up=y_up)
     known = default or camera_from_folder_name(folder)
     if known is None:
         raise InputError(
@@ -111,9 +116,9 @@ def choose_camera(
     return known, []
 
 
-def _given_camera(given: str) -> tuple[Calibration, list[str]]:
+def _given_camera(given: str, *, y_up: bool) -> tuple[Calibration, list[str]]:
     if Path(given).is_file():
-        return read_camera_file(Path(given))
+        return read_camera_file(Path(given), y_up=y_up)
     known = named_camera(given)
     if known is not None:
         return known, []

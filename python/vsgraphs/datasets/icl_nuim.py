@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from vsgraphs.datasets import tum
-from vsgraphs.datasets.camera_file import Calibration
+from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
@@ -28,6 +28,11 @@ NAME = "ICL-NUIM"
 LOOKED_FOR = "associations.txt of frame numbers with *.gt.freiburg"
 FRAMES_PER_S = 30.0
 TRUTH_SUFFIX = ".gt.freiburg"
+
+_CONVENTION = (
+    "ICL-NUIM: results are in seconds (frame number / 30) and with y down, unlike its *.gt.freiburg; "
+    "`vsgraphs eval` converts those"
+)
 
 
 def detect(folder: Path) -> bool:
@@ -40,7 +45,7 @@ def detect(folder: Path) -> bool:
 
 def open_folder(folder: Path, camera: str | Path | Calibration | None = None) -> RecordedSequence:
     """Opens the sequence; raises InputError when nothing in it can be used."""
-    calibration, remarks = choose_camera(folder, camera, CAMERAS["icl-nuim"])
+    calibration, remarks = choose_camera(folder, camera, CAMERAS["icl-nuim"], y_up=True)
     listed = tum.association_file(folder)
     if listed is None:
         raise InputError(f"{folder}: no associations.txt there")
@@ -58,7 +63,7 @@ def open_folder(folder: Path, camera: str | Path | Calibration | None = None) ->
         frames,
         (lambda: read_truth(truth)) if truth else None,
         timed.skipped,
-        remarks + timed.warnings,
+        [*remarks, _CONVENTION, *timed.warnings],
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from vsgraphs.datasets import icl_nuim, replica, seven_scenes, tum
-from vsgraphs.datasets.camera_file import Calibration
+from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.sequence import RecordedSequence
 from vsgraphs.errors import InputError
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from vsgraphs.datasets.camera_file import Calibration, check_calibration
+from vsgraphs.datasets.calibration import Calibration, check_calibration
 from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from vsgraphs.datasets.camera_file import Calibration
+from vsgraphs.datasets.calibration import Calibration
 
 if TYPE_CHECKING:
     from vsgraphs.trajectory import Trajectory

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vsgraphs.datasets.camera_file import Calibration
+from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError

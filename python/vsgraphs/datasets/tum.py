@@ -11,7 +11,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vsgraphs.datasets.camera_file import Calibration
+from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.cameras import choose_camera
 from vsgraphs.datasets.lists import (
     Timed,

@@ -25,17 +25,11 @@ def format_timeline(spans: Iterable[Span]) -> str:
         events.append(
             {"ph": "M", "name": "thread_sort_index", "pid": 1, "tid": number, "args": {"sort_index": number}}
         )
-    events += [
-        {
-            "ph": "X",
-            "name": name,
-            "pid": 1,
-            "tid": lanes[lane],
-            "ts": begin - origin,
-            "dur": duration,
-            "args": {"frame": frame},
-        }
+    lines = [json.dumps(event, separators=(",", ":")) for event in events]
+    names = {name: json.dumps(name) for _, name, *_ in ordered}
+    lines += [
+        f'{{"ph":"X","name":{names[name]},"pid":1,"tid":{lanes[lane]},"ts":{begin - origin},"dur":{duration},'
+        f'"args":{{"frame":{frame}}}}}'
         for lane, name, begin, duration, frame in ordered
     ]
-    lines = ",\n".join(json.dumps(event, separators=(",", ":")) for event in events)
-    return '{"displayTimeUnit":"ms","traceEvents":[\n' + lines + "\n]}\n"
+    return '{"displayTimeUnit":"ms","traceEvents":[\n' + ",\n".join(lines) + "\n]}\n"

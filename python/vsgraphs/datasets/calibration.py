@@ -1,0 +1,69 @@
+"""A camera's numbers, without the compiled module."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from vsgraphs.errors import InputError
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Camera and depth sensor: the fields of `vsgraphs.Camera`, None where its default holds.
+
+    `origin` says where the numbers come from.
+    """
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    fps: float = 30.0
+    depth_scale: float = 5000.0
+    depth_min_m: float = 0.3
+    depth_max_m: float = 8.0
+    invalid_depth: tuple[int, ...] = (0, 65535)
+    depth_noise: tuple[float, float, float] | None = None
+    depth_alignment_m: float | None = None
+    origin: str = "built in"
+
+    def to_core(self) -> Any:
+        """The `vsgraphs.Camera` of these numbers (loads the compiled module)."""
+        from vsgraphs.compiled import core
+
+        given = {"depth_noise": self.depth_noise, "depth_alignment_m": self.depth_alignment_m}
+        return core().Camera(
+            self.width,
+            self.height,
+            self.fx,
+            self.fy,
+            self.cx,
+            self.cy,
+            distortion=self.distortion,
+            fps=self.fps,
+            depth_scale=self.depth_scale,
+            depth_min_m=self.depth_min_m,
+            depth_max_m=self.depth_max_m,
+            invalid_depth=list(self.invalid_depth),
+            **{key: value for key, value in given.items() if value is not None},
+        )
+
+
+def check_calibration(camera: Calibration, source: str) -> None:
+    """Raises InputError naming the first field that makes no sense."""
+    for key in ("width", "height", "fx", "fy", "fps", "depth_scale", "depth_max_m"):
+        if not getattr(camera, key) > 0:
+            raise InputError(f"{source}: {key} is {getattr(camera, key)}, must be positive")
+    if camera.width > 16384 or camera.height > 16384:
+        raise InputError(f"{source}: {camera.width}x{camera.height} pixels is larger than any camera")
+    if not (0 <= camera.cx < camera.width and 0 <= camera.cy < camera.height):
+        raise InputError(f"{source}: cx, cy = {camera.cx}, {camera.cy} lies outside the image")
+    if not 0 <= camera.depth_min_m < camera.depth_max_m:
+        raise InputError(
+            f"{source}: depth_min {camera.depth_min_m} m must be at least 0 and below depth_max "
+            f"{camera.depth_max_m} m"
+        )
