@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+from layouts import sliding_scene, write_tum
 
 Program = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -32,3 +36,30 @@ def shared_data() -> Path:
     if not folder:
         pytest.skip("VSGRAPHS_DATA does not name the folder of recorded sequences")
     return Path(folder)
+
+
+@pytest.fixture(scope="session")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """60 frames, the camera slides 0.8 m along a wall."""
+    return write_tum(tmp_path_factory.mktemp("data") / "slide", sliding_scene([2 * i for i in range(60)]))
+
+
+@pytest.fixture
+def sequence(recorded: Path, tmp_path: Path) -> Path:
+    """A copy that a test may damage."""
+    return Path(shutil.copytree(recorded, tmp_path / "slide"))
+
+
+def report(out: Path) -> dict[str, Any]:
+    """A run's run.json."""
+    found: dict[str, Any] = json.loads((out / "run.json").read_text())
+    return found
+
+
+def one_line_error(done: subprocess.CompletedProcess[str]) -> str:
+    """The error line of a failed run; fails unless it is one line and exit code 2."""
+    assert done.returncode == 2, (done.returncode, done.stdout, done.stderr)
+    errors = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+    assert len(errors) == 1, done.stderr
+    assert "Traceback" not in done.stderr
+    return errors[0]

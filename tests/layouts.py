@@ -55,6 +55,11 @@ class Scene:
         )
 
 
+def sliding_scene(shifts_px: list[int]) -> Scene:
+    """Large enough to be tracked."""
+    return Scene(frames=len(shifts_px), width=320, height=240, focal_px=300.0, shifts_px=shifts_px)
+
+
 def texture(height: int, width: int, seed: int) -> np.ndarray:
     """(height, width, 3) uint8: random rectangles, many corners."""
     rng = np.random.default_rng(seed)

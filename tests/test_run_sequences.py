@@ -1,43 +1,34 @@
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from layouts import Scene, write_tum
 
 SCRIPT = Path(__file__).resolve().parent.parent / "benchmarks" / "run_sequences.py"
+sys.path.insert(0, str(SCRIPT.parent))
+import sequence_figures  # noqa: E402
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("run_sequences", SCRIPT)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["run_sequences"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_medians_and_ratios(script: ModuleType) -> None:
+def test_medians_and_ratios() -> None:
     first = [{"fps": 10.0, "ate_rmse_m": 0.1}, {"fps": 30.0}, {"fps": 20.0, "ate_rmse_m": 0.3}]
     second = [
         {"fps": 11.0, "ate_rmse_m": 0.1},
         {"fps": 60.0, "ate_rmse_m": 9.0},
         {"fps": 18.0, "ate_rmse_m": 0.15},
     ]
-    assert script.medians(first) == pytest.approx({"fps": 20.0, "ate_rmse_m": 0.2})
-    assert script.ratios(first, second) == pytest.approx({"fps": 1.1, "ate_rmse_m": 0.75})  # pair by pair
+    assert sequence_figures.medians(first) == pytest.approx({"fps": 20.0, "ate_rmse_m": 0.2})
+    assert sequence_figures.ratios(first, second) == pytest.approx(
+        {"fps": 1.1, "ate_rmse_m": 0.75}
+    )  # pair by pair
 
 
-def test_table(script: ModuleType) -> None:
-    text = script.table(
+def test_table() -> None:
+    text = sequence_figures.table(
         [("desk, threaded", {"fps": 81.26, "ate_rmse_m": 0.01}), ("hall, serial", {"fps": 7.0})]
     )
     assert text.splitlines()[0] == "| | ATE m | frames/s |"
