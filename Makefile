@@ -51,4 +51,4 @@ bench: ## C++ benchmarks of the parts
 	@scripts/bench
 
 clean: ## remove builds, the virtual environment and the demo's output
-	rm -rf build .venv demo dist .mypy_cache .ruff_cache .pytest_cache
+	rm -rf build .venv out/demo dist .mypy_cache .ruff_cache .pytest_cache
