@@ -79,6 +79,7 @@ class Config:
     def __init__(self) -> None:
         self.values: dict[str, Any] = {
             "system.seed": 0,
+            "system.realtime": False,
             "system.execution": "threaded",
             "tracker.max_features": 1000,
             "tracker.huber_px": 2.5,

@@ -38,6 +38,19 @@ def test_tum_pairs_one_to_one_and_tells_what_is_left_out(tmp_path: Path) -> None
     assert "1 of 8 images have no depth within 0.02 s" in sequence.warnings[0]
 
 
+def test_lists_as_other_programs_write_them(tmp_path: Path) -> None:
+    folder = write_tum(tmp_path / "desk")
+    for name in ("rgb.txt", "groundtruth.txt", "camera.yaml"):
+        text = (folder / name).read_text().replace("# colour", "").replace("# truth", "")
+        (folder / name).write_bytes(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())
+    text = (folder / "depth.txt").read_text()
+    (folder / "depth.txt").write_text(text.replace(" depth/", ",\tdepth/"))
+    sequence = open_sequence(folder)
+    assert len(sequence.frames) == 8
+    assert sequence.groundtruth is not None
+    assert len(sequence.groundtruth) == 8
+
+
 def test_tum_without_truth(tmp_path: Path) -> None:
     folder = write_tum(tmp_path / "desk")
     (folder / "groundtruth.txt").unlink()

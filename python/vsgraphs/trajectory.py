@@ -121,7 +121,7 @@ def trajectory_from_matrices(timestamps: Array, poses: Array, source: str) -> Tr
 def read_number_rows(path: Path, columns: int, what: str) -> Array:
     """Text file of rows of numbers, blanks or commas between them -> (N, columns)."""
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     rows: list[list[float]] = []

@@ -78,7 +78,6 @@ def run(
             source=source,
             out=out,
             camera=camera,
-            realtime=realtime,
             max_frames=max_frames,
             config_file=config,
             assignments=list(set_ or []),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from dataclasses import dataclass, field
@@ -28,7 +29,6 @@ class RunRequest:
     source: Path
     out: Path
     camera: str | None = None
-    realtime: bool = False
     max_frames: int | None = None
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
@@ -39,6 +39,7 @@ def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
     sequence = open_sequence(request.source, request.camera)
     prepare_directory(request.out)
+    _check_schedule_out(request)
     frames = sequence.frames[: request.max_frames]
     print(sequence.describe(), flush=True)
     for line in sequence.warnings:
@@ -50,7 +51,7 @@ def run_sequence(request: RunRequest) -> int:
         slam = core().Slam(config, sequence.camera)
         with Interrupt() as interrupt:
             progress = Progress(len(frames))
-            pacing = Realtime(interrupt.requested) if request.realtime else AsFastAsPossible()
+            pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
             stamps = [frame.timestamp for frame in frames]
             session = Session(slam, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
@@ -67,6 +68,14 @@ def run_sequence(request: RunRequest) -> int:
         raise InputError(nothing_tracked(request.source, session.tally))
     print(summarise(report, request.out))
     return interrupt.exit_code
+
+
+def _check_schedule_out(request: RunRequest) -> None:
+    """The core writes the schedule when all is done: better to know before that it cannot."""
+    path = request.shortcuts.get("system.schedule_out")
+    folder = Path(str(path)).parent
+    if path is not None and not (folder.is_dir() and os.access(folder, os.W_OK)):
+        raise InputError(f"--schedule-out {path}: {folder} is not a directory that can be written to")
 
 
 def _attempt(session: Session) -> Exception | None:

@@ -99,7 +99,7 @@ def _parse(path: Path) -> dict[str, Any]:
     import yaml
 
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise InputError(f"cannot read camera file {path}: {error.strerror or error}") from None
     except UnicodeDecodeError:

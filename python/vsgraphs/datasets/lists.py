@@ -73,7 +73,7 @@ def _count(out: Timed[T], reason: str, count: int, message: str) -> None:
 def read_list(path: Path, fields: int) -> list[list[str]]:
     """Rows of a list file, comments and blank lines left out. Every row has at least `fields` fields."""
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     rows = []
