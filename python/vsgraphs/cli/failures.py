@@ -50,8 +50,8 @@ def is_mistake(error: Exception) -> bool:
     """Whether the user can cure it: our InputError, the compiled module's, an unusable machine or file."""
     if isinstance(error, InputError | ImportError | OSError):
         return True
-    core = sys.modules.get("vsgraphs._core")
-    return core is not None and isinstance(error, core.InputError)
+    compiled = getattr(sys.modules.get("vsgraphs._core"), "InputError", InputError)
+    return isinstance(error, compiled)
 
 
 def _say(line: str) -> None:
