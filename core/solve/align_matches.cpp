@@ -1,5 +1,6 @@
 #include "core/solve/align_matches.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "core/geometry/align.h"
 #include "core/solve/factors/reprojection.h"
+#include "core/solve/pose_normal.h"
 
 namespace vsgraphs {
 namespace {
@@ -38,6 +40,16 @@ class Ransac {
     return best;
   }
 
+  // The matches that agree with a pose within the inflated gate.
+  std::vector<PoseObservation> supporters(const Se3& pose) const {
+    const Eigen::Matrix3d camera_from_world = pose.rotation().transpose();
+    std::vector<PoseObservation> out;
+    for (const PoseObservation& m : matches_) {
+      if (agrees(m, camera_from_world, pose)) out.push_back(m);
+    }
+    return out;
+  }
+
  private:
   std::optional<Se3> draw(Rng& rng) const {
     const auto n = static_cast<std::uint32_t>(drawable_.size());
@@ -46,9 +58,10 @@ class Ransac {
     const auto [low, high] = std::minmax(pick[0], pick[1]);
     if (pick[2] >= low) ++pick[2];
     if (pick[2] >= high) ++pick[2];
+    std::array<PoseObservation, 3> sample;
     std::array<Eigen::Vector3d, 3> world, camera;
     for (int i = 0; i < 3; ++i) {
-      const PoseObservation& m = matches_[drawable_[pick[i]]];
+      const PoseObservation& m = sample[i] = matches_[drawable_[pick[i]]];
       world[i] = m.point_in_world;
       camera[i] = k_.unproject(m.u, m.v, 1.0 / m.inverse_depth);
     }
@@ -56,26 +69,46 @@ class Ransac {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       const double a = (world[i] - world[j]).norm(), b = (camera[i] - camera[j]).norm();
-      if (std::min(a, b) < 0.05 || std::abs(a - b) > 0.05 + 0.1 * std::max(a, b)) return {};
+      if (std::min(a, b) < 0.05 || std::abs(a - b) > 0.08 + 0.1 * std::max(a, b)) return {};
     }
-    return align_points(world, camera);
+    const std::optional<Se3> pose = align_points(world, camera);
+    return pose ? sharpened(sample, *pose) : pose;
+  }
+
+  // Depth readings place three points to centimetres, which is many pixels; their pixels know better.
+  std::optional<Se3> sharpened(const std::array<PoseObservation, 3>& sample, Se3 pose) const {
+    PoseSolverOptions plain;
+    plain.huber_px = plain.huber_depth = 1e6;
+    const PoseRows rows(k_, sample, plain);
+    for (int step = 0; step < 2; ++step) {
+      PoseNormal normal;
+      rows.accumulate(pose, normal);
+      normal.h.diagonal() *= 1 + 1e-9;
+      const Vector6d xi = normal.h.llt().solve(normal.b);
+      if (!xi.allFinite()) return {};
+      pose = pose.retract(xi);
+    }
+    return pose;
+  }
+
+  bool agrees(const PoseObservation& m, const Eigen::Matrix3d& camera_from_world, const Se3& pose) const {
+    const Eigen::Vector3d p = camera_from_world * (m.point_in_world - pose.translation());
+    if (!(p.z() >= min_projection_depth_m)) return false;
+    const double iz = 1.0 / p.z();
+    const double ru = (k_.fx * p.x() * iz + k_.cx - m.u) * m.inv_sigma_px;
+    const double rv = (k_.fy * p.y() * iz + k_.cy - m.v) * m.inv_sigma_px;
+    const double rd = m.has_depth() ? (iz - m.inverse_depth) * m.inv_sigma_inverse_depth : 0.0;
+    return ru * ru + rv * rv + rd * rd <= options_.gate_inflation * (m.has_depth() ? chi2_95_3 : chi2_95_2);
   }
 
   // Matches within the inflated gate; gives up once `to_beat` is out of reach.
   int support(const Se3& pose, int to_beat) const {
     const Eigen::Matrix3d camera_from_world = pose.rotation().transpose();
-    const double gate2 = options_.gate_inflation * chi2_95_2, gate3 = options_.gate_inflation * chi2_95_3;
     int count = 0, left = static_cast<int>(matches_.size());
     for (const PoseObservation& m : matches_) {
       if (count + left <= to_beat) break;
       --left;
-      const Eigen::Vector3d p = camera_from_world * (m.point_in_world - pose.translation());
-      if (!(p.z() >= min_projection_depth_m)) continue;
-      const double iz = 1.0 / p.z();
-      const double ru = (k_.fx * p.x() * iz + k_.cx - m.u) * m.inv_sigma_px;
-      const double rv = (k_.fy * p.y() * iz + k_.cy - m.v) * m.inv_sigma_px;
-      const double rd = m.has_depth() ? (iz - m.inverse_depth) * m.inv_sigma_inverse_depth : 0.0;
-      if (ru * ru + rv * rv + rd * rd <= (m.has_depth() ? gate3 : gate2)) ++count;
+      count += agrees(m, camera_from_world, pose);
     }
     return count;
   }
@@ -90,9 +123,14 @@ class Ransac {
 
 std::optional<PoseSolution> align_matches(const Intrinsics& intrinsics, std::span<const PoseObservation> matches,
                                           Rng rng, const AlignMatchesOptions& options) {
-  const std::optional<Se3> pose = Ransac(intrinsics, matches, options).run(rng);
+  Ransac ransac(intrinsics, matches, options);
+  const std::optional<Se3> pose = ransac.run(rng);
   if (!pose) return {};
-  PoseSolution solution = solve_pose(intrinsics, *pose, matches);
+  // First on what agreed with the three, so that the many wrong matches have no say; then everything is judged anew.
+  const Se3 refined = solve_pose(intrinsics, *pose, ransac.supporters(*pose)).world_from_camera;
+  PoseSolverOptions gated;
+  gated.gate_first = true;
+  PoseSolution solution = solve_pose(intrinsics, refined, matches, {}, {}, gated);
   if (solution.inliers < options.min_inliers || !solution.world_from_camera.finite()) return {};
   return solution;
 }

@@ -1,6 +1,6 @@
 // The pose of a camera from matched points without a prediction: RANSAC (Fischler and Bolles 1981) over three matches with
-// depth (align_points), counted in the image, then the pose solver on what agrees. For relocalisation, large steps and
-// loops.
+// depth (align_points, then two Gauss-Newton steps that make it as sharp as the pixels are), counted in the image, then the
+// pose solver on what agrees. For relocalisation, large steps and loops.
 #pragma once
 
 #include <cstdint>

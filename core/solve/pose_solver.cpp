@@ -24,6 +24,7 @@ class Solver {
   PoseSolution solve(const Se3& initial) {
     PoseSolution out;
     out.world_from_camera = initial;
+    if (options_.gate_first) classify_all(out);
     for (int round = 0; round < std::max(options_.rounds, 1); ++round) {
       out.converged = minimise(out.world_from_camera, out.iterations);
       classify_all(out);

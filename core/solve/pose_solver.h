@@ -37,6 +37,9 @@ struct PoseSolverOptions {
   double huber_depth = huber_3dof.delta;  // sigmas, observations with depth
   double huber_plane = 1.96;              // sigmas, point-to-plane
   double negligible_step = 1e-6;          // m and rad
+  // Gate the observations at the initial pose before the first round: for a pose that is good already, among matches so bad
+  // that Huber's cost over all of them would pull it away.
+  bool gate_first = false;
   // A direction of motion known worse than this (one sigma, m or rad) makes the pose degenerate.
   double max_sigma = 0.05;
 };

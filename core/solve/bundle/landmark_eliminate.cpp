@@ -4,6 +4,10 @@
 
 #include "core/solve/bundle/landmark_part.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // see lanes.h
+#endif
+
 namespace vsgraphs {
 namespace {
 
@@ -36,30 +40,67 @@ std::array<double, 6> inverse_or_zero(const std::array<double, 6>& h, const std:
 
 }  // namespace
 
-void LandmarkPart::eliminate(double lambda, double* values, Eigen::VectorXd& b) {
+void LandmarkPart::eliminate_landmark(std::size_t l, const std::array<double, 6>& c, double* values,
+                                      Eigen::VectorXd& b) {
   using Matrix63 = Eigen::Matrix<double, 6, 3>;
-  const int* pair = pair_value_.data();
-  std::vector<Matrix63> y(static_cast<std::size_t>(longest_));
-  for (std::size_t l = 0; l + 1 < landmarks_.size(); ++l) {
-    Landmark& landmark = landmarks_[l];
-    landmark.inverse = inverse_or_zero(landmark.h, damping(landmark.h, lambda));
-    const auto& c = landmark.inverse;
-    Eigen::Matrix3d inverse;
-    inverse << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-    const Eigen::Map<const Eigen::Vector3d> b_landmark(landmark.b.data());
-    const int edges = landmarks_[l + 1].edge_begin - landmark.edge_begin;
-    const Edge* edge = edges_.data() + landmark.edge_begin;
-    for (int i = 0; i < edges; ++i) {
-      y[i].noalias() = Eigen::Map<const Matrix63>(edge[i].w.data()) * inverse;
-      b.segment<6>(6 * edge[i].variable) -= y[i] * b_landmark;
+  Eigen::Matrix3d inverse;
+  inverse << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  const Eigen::Vector3d shift = inverse * Eigen::Map<const Eigen::Vector3d>(landmarks_[l].b.data());
+  const int first = edge_begin_[l], edges = edge_begin_[l + 1] - first;
+  // Both W and Y = W C carry a minus sign that cancels in Y W'.
+  for (int i = 0; i < edges; ++i) {
+    const Edge& edge = edges_[first + i];
+    const Eigen::Map<const Eigen::Matrix3d> n(edge.n.data());
+    const Eigen::Map<const Eigen::Vector3d> p(edge.p.data());
+    const Eigen::Vector3d force = n * shift;
+    double* to = b.data() + 6 * edge_variable_[first + i];
+    const Eigen::Vector3d torque = p.cross(force);
+    for (int k = 0; k < 3; ++k) to[k] += force[k], to[3 + k] += torque[k];
+    const Eigen::Matrix3d y = n.lazyProduct(inverse);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d yk = y.col(k), t = p.cross(yk);
+      tall_[i].top[k] = Lanes{yk[0], yk[1], yk[2], t[0]};
+      tall_[i].middle[k] = Lanes{t[1], t[2], yk[0], yk[1]};
+      tall_[i].bottom[k] = Lanes{yk[2], t[0], t[1], t[2]};
     }
-    for (int i = 0; i < edges; ++i) {
-      const Eigen::Map<const Matrix63> w(edge[i].w.data());
-      for (int j = i; j < edges; ++j) {
-        Eigen::Map<Matrix6d> block(values + *pair++);
-        block.noalias() -= y[j].lazyProduct(w.transpose());
+  }
+  const int* pair = pair_value_.data() + pair_begin_[l];
+  for (int i = 0; i < edges; ++i) {
+    const Edge& edge = edges_[first + i];
+    const Eigen::Map<const Eigen::Matrix3d> n(edge.n.data());
+    const Eigen::Map<const Eigen::Vector3d> p(edge.p.data());
+    Matrix63 w;
+    for (int k = 0; k < 3; ++k) {
+      w.col(k).head<3>() = n.col(k);
+      w.col(k).tail<3>() = p.cross(n.col(k));
+    }
+    Lanes even[3][3], mixed[3][3], odd[3][3];  // factors of columns 2h, both, and 2h + 1, per column k of Y
+    for (int h = 0; h < 3; ++h) {
+      for (int k = 0; k < 3; ++k) {
+        const double x = w(2 * h, k), y = w(2 * h + 1, k);
+        even[h][k] = lanes(x);
+        mixed[h][k] = Lanes{x, x, y, y};
+        odd[h][k] = lanes(y);
       }
     }
+    for (int j = i; j < edges; ++j) {
+      double* block = values + *pair++;
+      const Tall& y = tall_[j];
+      for (int h = 0; h < 3; ++h, block += 12) {
+        store(block, load(block) - (y.top[0] * even[h][0] + y.top[1] * even[h][1] + y.top[2] * even[h][2]));
+        store(block + 4,
+              load(block + 4) - (y.middle[0] * mixed[h][0] + y.middle[1] * mixed[h][1] + y.middle[2] * mixed[h][2]));
+        store(block + 8,
+              load(block + 8) - (y.bottom[0] * odd[h][0] + y.bottom[1] * odd[h][1] + y.bottom[2] * odd[h][2]));
+      }
+    }
+  }
+}
+
+void LandmarkPart::eliminate(double lambda, double* values, Eigen::VectorXd& b) {
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) {
+    inverses_[l] = inverse_or_zero(landmarks_[l].h, damping(landmarks_[l].h, lambda));
+    eliminate_landmark(l, inverses_[l], values, b);
   }
 }
 
@@ -67,15 +108,20 @@ double LandmarkPart::back_substitute(double lambda, const Eigen::VectorXd& step,
                                      const std::vector<Eigen::Vector3d>& landmarks,
                                      std::vector<Eigen::Vector3d>& moved) const {
   double decrease = 0;
-  for (std::size_t l = 0; l + 1 < landmarks_.size(); ++l) {
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) {
     const Landmark& landmark = landmarks_[l];
     const Eigen::Map<const Eigen::Vector3d> b_landmark(landmark.b.data());
     Eigen::Vector3d right = b_landmark;
-    for (int e = landmark.edge_begin; e < landmarks_[l + 1].edge_begin; ++e) {
-      const Eigen::Map<const Eigen::Matrix<double, 6, 3>> w(edges_[e].w.data());
-      right.noalias() -= w.transpose() * step.segment<6>(6 * edges_[e].variable);
+    for (int e = edge_begin_[l]; e < edge_begin_[l + 1]; ++e) {
+      // W' step = -N' (rho + phi x p)
+      const Eigen::Map<const Eigen::Matrix3d> n(edges_[e].n.data());
+      const Eigen::Map<const Eigen::Vector3d> p(edges_[e].p.data());
+      const double* xi = step.data() + 6 * edge_variable_[e];
+      const Eigen::Vector3d rho(xi[0], xi[1], xi[2]), phi(xi[3], xi[4], xi[5]);
+      const Eigen::Vector3d motion = rho + phi.cross(p);
+      right += n.transpose().lazyProduct(motion);
     }
-    const auto& c = landmark.inverse;
+    const auto& c = inverses_[l];
     const Eigen::Vector3d delta(c[0] * right[0] + c[1] * right[1] + c[2] * right[2],
                                 c[1] * right[0] + c[3] * right[1] + c[4] * right[2],
                                 c[2] * right[0] + c[4] * right[1] + c[5] * right[2]);

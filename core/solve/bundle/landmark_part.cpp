@@ -10,68 +10,94 @@ namespace vsgraphs {
 
 LandmarkPart::LandmarkPart(const BundleProblem& problem, const std::vector<int>& variable_of_pose,
                            const BundleOptions& options)
-    : k_(problem.intrinsics), huber_px_(options.huber_px), huber_depth_(options.huber_depth) {
+    : k_(problem.intrinsics),
+      huber_px_(options.huber_px),
+      huber_depth_(options.huber_depth),
+      variable_of_pose_(variable_of_pose),
+      landmarks_(problem.landmarks.size()),
+      inverses_(problem.landmarks.size()) {
   for (int variable : variable_of_pose) free_poses_ = std::max(free_poses_, variable + 1);
-  pose_sums_.resize(static_cast<std::size_t>(free_poses_));
-  sort_observations(problem, variable_of_pose);
+  group_observations(problem, variable_of_pose);
+  number_edges(problem, variable_of_pose);
 }
 
-void LandmarkPart::sort_observations(const BundleProblem& problem, const std::vector<int>& variable_of_pose) {
-  const auto& input = problem.observations;
-  landmarks_.resize(problem.landmarks.size() + 1);
-  std::vector<int> next(problem.landmarks.size() + 1, 0);
-  for (const auto& o : input) ++next[o.landmark + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t l = 0; l < landmarks_.size(); ++l) landmarks_[l].observation_begin = next[l];
-  observations_.resize(input.size());
-  for (std::size_t i = 0; i < input.size(); ++i) {
-    const auto& o = input[i];
-    observations_[next[o.landmark]++] = {o.u, o.v, std::max(o.inverse_depth, 0.0f), o.inv_sigma_px,
-                                         o.inverse_depth > 0 ? o.inv_sigma_inverse_depth : 0.0f, o.pose, -1,
-                                         static_cast<int>(i)};
+void LandmarkPart::group_observations(const BundleProblem& problem, const std::vector<int>& variable_of_pose) {
+  std::vector<int> count(variable_of_pose.size(), 0);
+  for (const auto& o : problem.observations) ++count[o.pose];
+  group_begin_.assign(1, 0);
+  for (int n : count) group_begin_.push_back(group_begin_.back() + (n + lane_count - 1) / lane_count);
+  Group empty{};
+  empty.delta = lanes(1);
+  groups_.assign(static_cast<std::size_t>(group_begin_.back()), empty);
+  std::vector<int> next(variable_of_pose.size());
+  for (std::size_t p = 0; p < next.size(); ++p) next[p] = lane_count * group_begin_[p];
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    const ReprojectionObservation& o = problem.observations[i];
+    const int at = next[o.pose]++, k = at % lane_count;
+    Group& g = groups_[at / lane_count];
+    g.u[k] = o.u;
+    g.v[k] = o.v;
+    g.weight_px[k] = o.inv_sigma_px;
+    g.inverse_depth[k] = o.has_depth() ? o.inverse_depth : 0.0f;
+    g.weight_depth[k] = o.has_depth() ? o.inv_sigma_inverse_depth : 0.0f;
+    g.delta[k] = o.has_depth() ? huber_depth_ : huber_px_;
+    g.landmark[k] = o.landmark;
+    g.source[k] = static_cast<int>(i);
   }
-  edges_.reserve(input.size());
-  int pairs = 0;
-  for (std::size_t l = 0; l + 1 < landmarks_.size(); ++l) {
-    const auto first = observations_.begin() + landmarks_[l].observation_begin;
-    const auto last = observations_.begin() + landmarks_[l + 1].observation_begin;
-    std::sort(first, last, [](const Observation& a, const Observation& b) {
-      return a.pose != b.pose ? a.pose < b.pose : a.source < b.source;
-    });
-    landmarks_[l].edge_begin = static_cast<int>(edges_.size());
-    landmarks_[l].pair_begin = pairs;
-    for (auto o = first; o != last; ++o) {
-      const int variable = variable_of_pose[o->pose];
-      if (variable < 0) continue;
-      const bool same = static_cast<int>(edges_.size()) > landmarks_[l].edge_begin && edges_.back().variable == variable;
-      if (!same) edges_.push_back({variable, {}});
-      o->edge = static_cast<int>(edges_.size()) - 1;
+}
+
+// Poses are walked in ascending order, so a landmark's edges come in ascending order of their variables.
+void LandmarkPart::number_edges(const BundleProblem& problem, const std::vector<int>& variable_of_pose) {
+  const std::size_t count = problem.landmarks.size();
+  std::vector<int> last_pose(count, -1), edges(count, 0);
+  const auto walk = [&](auto visit) {  // visit(group, lane, whether this starts a new edge)
+    std::fill(last_pose.begin(), last_pose.end(), -1);
+    for (std::size_t p = 0; p < variable_of_pose.size(); ++p) {
+      if (variable_of_pose[p] < 0) continue;
+      for (int g = group_begin_[p]; g < group_begin_[p + 1]; ++g) {
+        for (int k = 0; k < lane_count && groups_[g].source[k] >= 0; ++k) {
+          int& last = last_pose[groups_[g].landmark[k]];
+          visit(groups_[g], k, last != static_cast<int>(p), variable_of_pose[p]);
+          last = static_cast<int>(p);
+        }
+      }
     }
-    const int k = static_cast<int>(edges_.size()) - landmarks_[l].edge_begin;
-    longest_ = std::max(longest_, k);
-    pairs += k * (k + 1) / 2;
+  };
+  walk([&](const Group& g, int k, bool starts, int) { edges[g.landmark[k]] += starts; });
+  edge_begin_.assign(1, 0);
+  pair_begin_.assign(1, 0);
+  int longest = 0;
+  for (int n : edges) {
+    edge_begin_.push_back(edge_begin_.back() + n);
+    pair_begin_.push_back(pair_begin_.back() + n * (n + 1) / 2);
+    longest = std::max(longest, n);
   }
-  landmarks_.back().edge_begin = static_cast<int>(edges_.size());
-  landmarks_.back().pair_begin = pairs;
+  edges_.resize(static_cast<std::size_t>(edge_begin_.back()));
+  edge_variable_.resize(edges_.size());
+  std::vector<int> next(edge_begin_.begin(), edge_begin_.end() - 1);
+  walk([&](Group& g, int k, bool starts, int variable) {
+    int& at = next[g.landmark[k]];
+    if (starts) edge_variable_[at++] = variable;
+    g.edge[k] = at - 1;
+  });
+  tall_.resize(static_cast<std::size_t>(longest));
 }
 
 void LandmarkPart::add_pairs(std::vector<std::vector<int>>& rows) const {
   // Landmarks seen by each pose, so that each column is finished before the next and one row of marks suffices.
   std::vector<int> begin(static_cast<std::size_t>(free_poses_) + 1, 0);
-  for (const Edge& e : edges_) ++begin[e.variable + 1];
+  for (int variable : edge_variable_) ++begin[variable + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<std::pair<int, int>> seen(edges_.size());  // edge, one past its landmark's last edge
   std::vector<int> next = begin;
-  for (std::size_t l = 0; l + 1 < landmarks_.size(); ++l) {
-    for (int e = landmarks_[l].edge_begin; e < landmarks_[l + 1].edge_begin; ++e) {
-      seen[next[edges_[e].variable]++] = {e, landmarks_[l + 1].edge_begin};
-    }
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) {
+    for (int e = edge_begin_[l]; e < edge_begin_[l + 1]; ++e) seen[next[edge_variable_[e]]++] = {e, edge_begin_[l + 1]};
   }
   std::vector<int> mark(static_cast<std::size_t>(free_poses_), -1);
   for (int c = 0; c < free_poses_; ++c) {
     for (int s = begin[c]; s < begin[c + 1]; ++s) {
       for (int e = seen[s].first + 1; e < seen[s].second; ++e) {
-        const int r = edges_[e].variable;
+        const int r = edge_variable_[e];
         if (mark[r] == c) continue;
         mark[r] = c;
         rows[c].push_back(r);
@@ -83,13 +109,12 @@ void LandmarkPart::add_pairs(std::vector<std::vector<int>>& rows) const {
 void LandmarkPart::bind(const BlockMatrix& pattern) {
   diagonal_value_.resize(static_cast<std::size_t>(free_poses_));
   for (int v = 0; v < free_poses_; ++v) diagonal_value_[v] = pattern.value_begin(pattern.diagonal(v));
-  pair_value_.resize(static_cast<std::size_t>(landmarks_.back().pair_begin));
+  pair_value_.resize(static_cast<std::size_t>(pair_begin_.back()));
   std::size_t at = 0;
-  for (std::size_t l = 0; l + 1 < landmarks_.size(); ++l) {
-    const int end = landmarks_[l + 1].edge_begin;
-    for (int i = landmarks_[l].edge_begin; i < end; ++i) {
-      for (int j = i; j < end; ++j) {
-        pair_value_[at++] = pattern.value_begin(pattern.find(edges_[j].variable, edges_[i].variable));
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) {
+    for (int i = edge_begin_[l]; i < edge_begin_[l + 1]; ++i) {
+      for (int j = i; j < edge_begin_[l + 1]; ++j) {
+        pair_value_[at++] = pattern.value_begin(pattern.find(edge_variable_[j], edge_variable_[i]));
       }
     }
   }
@@ -115,12 +140,15 @@ std::vector<ObservationFit> LandmarkPart::classify_all(
 }
 
 void LandmarkPart::drop(const std::vector<ObservationFit>& fit) {
-  for (Observation& o : observations_) {
-    const ObservationFit f = fit[o.source];
-    if (f == ObservationFit::inlier) continue;
-    o.inverse_depth = 0;
-    o.inv_sigma_inverse_depth = 0;
-    if (f == ObservationFit::outlier) o.inv_sigma_px = 0;
+  for (Group& g : groups_) {
+    for (int k = 0; k < lane_count && g.source[k] >= 0; ++k) {
+      const ObservationFit f = fit[g.source[k]];
+      if (f == ObservationFit::inlier) continue;
+      g.inverse_depth[k] = 0;
+      g.weight_depth[k] = 0;
+      g.delta[k] = huber_px_;
+      if (f == ObservationFit::outlier) g.weight_px[k] = 0;
+    }
   }
 }
 

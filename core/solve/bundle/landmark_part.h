@@ -1,5 +1,5 @@
-// The reprojection side of the joint problem: landmark-major observations, their normal equations, and the elimination
-// of every landmark from the reduced system (fixed-size blocks, lower half only).
+// The reprojection side of the joint problem: the normal equations of all observations and the elimination of every landmark
+// from the reduced system. Observations are read by pose, four at a time; blocks have fixed sizes, lower half only.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +8,7 @@
 
 #include "core/solve/bundle/block_matrix.h"
 #include "core/solve/bundle_adjustment.h"
+#include "core/solve/lanes.h"
 
 namespace vsgraphs {
 
@@ -40,43 +41,51 @@ class LandmarkPart {
   void drop(const std::vector<ObservationFit>& fit);
 
  private:
-  struct Observation {
-    float u, v, inverse_depth, inv_sigma_px, inv_sigma_inverse_depth;  // inv_sigma_px 0: dropped
-    int pose;
-    int edge;  // -1: the pose is fixed
-    int source;
+  // Four observations of one pose; lanes that are padding or dropped have weight_px 0.
+  struct Group {
+    Lanes u, v, inverse_depth, weight_px, weight_depth, delta;
+    std::array<int, lane_count> landmark{}, source{-1, -1, -1, -1};  // source: the caller's index
+    std::array<int, lane_count> edge{-1, -1, -1, -1};                // -1: padding, or the pose is fixed
   };
-  // A landmark seen from one free pose; several observations may share it.
+  // A landmark seen from one free pose; several observations may share it. J_pose' J_point = -[N; p x N].
   struct Edge {
-    int variable;
-    alignas(16) std::array<double, 18> w;  // 6x3 column-major, J_pose' J_point
+    std::array<double, 9> n{};  // N = M R', 3x3 column-major, M the point's information in the camera frame
+    std::array<double, 3> p{};  // point in the camera
   };
   struct Landmark {
-    int observation_begin, edge_begin, pair_begin;
-    std::array<double, 6> h;        // J_point' J_point: 00 10 20 11 21 22
-    std::array<double, 6> inverse;  // of the damped h
-    std::array<double, 3> b;        // -gradient
+    std::array<double, 6> h{};  // J_point' J_point: 00 10 20 11 21 22
+    std::array<double, 3> b{};  // -gradient
+    std::array<double, 3> padding{};
   };
-  struct Pose {
-    std::array<double, 21> h;  // lower triangle, by columns
-    std::array<double, 6> b;
+  // Rows 0-3, rows 4 5 0 1 and rows 2-5 of each column of a 6x3 block: two columns of a 6x6 product, one after the other in
+  // memory, are then three full registers.
+  struct Tall {
+    Lanes top[3], middle[3], bottom[3];
   };
+  struct PoseSums;    // accumulators of one pose, in lanes
+  struct Projection;  // of four observations
 
-  void sort_observations(const BundleProblem& problem, const std::vector<int>& variable_of_pose);
-  void linearise_landmark(std::size_t l, const std::vector<Se3>& poses, const Eigen::Vector3d& point);
-  double robust_delta(const Observation& o) const { return o.inverse_depth > 0 ? huber_depth_ : huber_px_; }
+  void group_observations(const BundleProblem& problem, const std::vector<int>& variable_of_pose);
+  void number_edges(const BundleProblem& problem, const std::vector<int>& variable_of_pose);
+  void project(const Group& group, const Se3& pose, const std::vector<Eigen::Vector3d>& landmarks, Projection& out) const;
+  void linearise_group(const Group& group, const Se3& pose, const std::vector<Eigen::Vector3d>& landmarks,
+                       PoseSums& sums);
+  void eliminate_landmark(std::size_t l, const std::array<double, 6>& inverse, double* values, Eigen::VectorXd& b);
 
   Intrinsics k_;
   double huber_px_, huber_depth_;
   int free_poses_ = 0;
-  std::vector<Observation> observations_;  // by landmark, then pose, then input order
-  std::vector<Landmark> landmarks_;        // one past the end too
-  std::vector<Edge> edges_;                // by landmark, then variable
-  std::vector<Pose> pose_sums_;            // per free pose
-  std::vector<int> pair_value_;            // per landmark, per edge i, per edge j >= i: where block (j, i) begins
-  std::vector<int> diagonal_value_;        // per free pose
-  struct EdgeLanes;
-  int longest_ = 0;  // most edges of one landmark
+  std::vector<int> variable_of_pose_;
+  std::vector<int> group_begin_;  // per pose, one past the end too
+  std::vector<Group> groups_;
+  std::vector<Landmark> landmarks_;
+  std::vector<std::array<double, 6>> inverses_;  // of the damped h, per landmark
+  std::vector<int> edge_begin_, pair_begin_;     // per landmark, one past the end too
+  std::vector<Edge> edges_;                      // by landmark, then variable
+  std::vector<int> edge_variable_;
+  std::vector<int> pair_value_;      // per landmark, per edge i, per edge j >= i: where block (j, i) begins
+  std::vector<int> diagonal_value_;  // per free pose
+  std::vector<Tall> tall_;           // room for the most edges of one landmark
 };
 
 }  // namespace vsgraphs
