@@ -20,7 +20,7 @@ void bind_camera(nb::module_& m) {
           "__init__",
           [](Camera* self, int width, int height, double fx, double fy, double cx, double cy,
              std::array<double, 5> distortion, double fps, double depth_scale, double depth_min_m, double depth_max_m,
-             std::vector<std::uint16_t> invalid_depth, Noise noise) {
+             std::vector<std::uint16_t> invalid_depth, Noise noise, double depth_alignment_m) {
             Camera camera;
             camera.width = width;
             camera.height = height;
@@ -34,14 +34,14 @@ void bind_camera(nb::module_& m) {
             camera.depth_min_m = depth_min_m;
             camera.depth_max_m = depth_max_m;
             camera.invalid_depth = std::move(invalid_depth);
-            camera.depth_noise = {noise[0], noise[1], noise[2]};
+            camera.depth_noise = {noise[0], noise[1], noise[2], depth_alignment_m};
             camera.validate();
             new (self) Camera(std::move(camera));
           },
           "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a, nb::kw_only(),
           "distortion"_a = std::array<double, 5>{}, "fps"_a = 30.0, "depth_scale"_a = 5000.0, "depth_min_m"_a = 0.3,
           "depth_max_m"_a = 8.0, "invalid_depth"_a = std::vector<std::uint16_t>{0, 65535},
-          "depth_noise"_a = Noise{0.0012, 0.0019, 0.4},
+          "depth_noise"_a = Noise{0.0012, 0.0019, 0.4}, "depth_alignment_m"_a = 0.02,
           "Args:\n"
           "  width, height: image size, px.\n"
           "  fx, fy, cx, cy: focal lengths and principal point, px.\n"
@@ -50,7 +50,8 @@ void bind_camera(nb::module_& m) {
           "  depth_scale: raw depth units per metre.\n"
           "  depth_min_m, depth_max_m: readings outside are not used.\n"
           "  invalid_depth: raw values that mean \"no reading\".\n"
-          "  depth_noise: offset_m, scale_per_m, onset_m of sigma(z) = offset + scale (z - onset)^2.\n\n"
+          "  depth_noise: offset_m, scale_per_m, onset_m of sigma(z) = offset + scale (z - onset)^2.\n"
+          "  depth_alignment_m: what the delay and the offset between colour and depth add to that.\n\n"
           "Raises InputError naming the first value that makes no sense.")
       .def_rw("width", &Camera::width)
       .def_rw("height", &Camera::height)
@@ -67,7 +68,10 @@ void bind_camera(nb::module_& m) {
       .def_prop_rw(
           "depth_noise",
           [](const Camera& c) { return Noise{c.depth_noise.offset_m, c.depth_noise.scale_per_m, c.depth_noise.onset_m}; },
-          [](Camera& c, Noise n) { c.depth_noise = {n[0], n[1], n[2]}; })
+          [](Camera& c, Noise n) { c.depth_noise = {n[0], n[1], n[2], c.depth_noise.alignment_m}; })
+      .def_prop_rw(
+          "depth_alignment_m", [](const Camera& c) { return c.depth_noise.alignment_m; },
+          [](Camera& c, double value) { c.depth_noise.alignment_m = value; })
       .def("validate", &Camera::validate, "Raises InputError naming the first value that makes no sense.")
       .def("__repr__", [](const Camera& c) {
         return "Camera(" + std::to_string(c.width) + "x" + std::to_string(c.height) + ", fx=" + std::to_string(c.fx) +

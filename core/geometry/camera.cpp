@@ -1,5 +1,7 @@
 #include "core/geometry/camera.h"
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <string>
 
@@ -53,6 +55,8 @@ void Camera::validate() const {
   positive(depth_min_m, "depth_min_m");
   positive(depth_max_m, "depth_max_m");
   positive(depth_noise.offset_m, "depth_noise.offset_m");
+  require_input(std::isfinite(depth_noise.alignment_m) && depth_noise.alignment_m >= 0,
+                "camera: depth_noise.alignment_m must be zero or more");
   require_input(std::isfinite(cx) && std::isfinite(cy) && contains(cx, cy),
                 "camera: the principal point (cx, cy) lies outside the image");
   require_input(depth_max_m > depth_min_m, "camera: depth_max_m must exceed depth_min_m");

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -15,11 +16,18 @@ struct DepthNoise {
   double offset_m = 0.0012;
   double scale_per_m = 0.0019;
   double onset_m = 0.4;
+  // What lies between a depth reading and the colour feature it is given to: the two images are taken some
+  // milliseconds and some pixels apart, and that error is common to a whole frame, so no number of readings
+  // averages it away. Without it a moving camera lags behind its features (measured: docs/benchmarks.md).
+  double alignment_m = 0.02;
 
+  // Of the reading itself.
   double sigma_m(double depth_m) const {
     const double d = depth_m - onset_m;
     return offset_m + scale_per_m * d * d;
   }
+  // Of the reading as a measurement of the colour feature's depth.
+  double feature_sigma_m(double depth_m) const { return std::hypot(sigma_m(depth_m), alignment_m); }
 };
 
 struct Camera {

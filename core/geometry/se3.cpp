@@ -1,5 +1,7 @@
 #include "core/geometry/se3.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -22,9 +22,9 @@ struct Intrinsics {
   Eigen::Vector3d bearing(double u, double v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0}; }
 };
 
-// 1 / standard deviation of the inverse depth (m) of a reading at depth_m: sigma(1/z) = sigma(z) / z^2.
+// 1 / standard deviation of the inverse depth (m) of a feature's reading at depth_m: sigma(1/z) = sigma(z) / z^2.
 inline double inv_sigma_of_inverse_depth(const DepthNoise& noise, double depth_m) {
-  return depth_m * depth_m / noise.sigma_m(depth_m);
+  return depth_m * depth_m / noise.feature_sigma_m(depth_m);
 }
 
 }  // namespace vsgraphs

@@ -7,7 +7,7 @@
 namespace vsgraphs {
 
 struct KeyframePolicyOptions {
-  double min_tracked_share = 0.75;
+  double min_tracked_share = 0.85;
   double min_translation_m = 0.02;
   double min_rotation_rad = 0.035;
   double max_interval_s = 1.0;

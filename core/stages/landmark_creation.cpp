@@ -36,12 +36,11 @@ std::vector<int> features_without(const Keyframe& keyframe, bool with_depth) {
 
 // Fundamental matrix in undistorted pixels: x_b^T F x_a = 0.
 Eigen::Matrix3d fundamental(const Camera& camera, const Se3& b_from_a) {
-  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k(0, 0) = camera.fx;
-  k(1, 1) = camera.fy;
-  k(0, 2) = camera.cx;
-  k(1, 2) = camera.cy;
-  const Eigen::Matrix3d k_inverse = k.inverse();
+  Eigen::Matrix3d k_inverse = Eigen::Matrix3d::Identity();
+  k_inverse(0, 0) = 1.0 / camera.fx;
+  k_inverse(1, 1) = 1.0 / camera.fy;
+  k_inverse(0, 2) = -camera.cx / camera.fx;
+  k_inverse(1, 2) = -camera.cy / camera.fy;
   return k_inverse.transpose() * skew(b_from_a.translation()) * b_from_a.rotation() * k_inverse;
 }
 

@@ -16,7 +16,7 @@ constexpr int max_distance = 60;  // stricter than tracking: a wrong merge stays
 // The feature's own depth, where it has one, must not contradict the landmark's.
 bool depth_agrees(const Camera& camera, const Feature& feature, double landmark_depth_m) {
   if (!feature.has_depth()) return true;
-  const double tolerance = 4.0 * camera.depth_noise.sigma_m(landmark_depth_m) + 0.01 * landmark_depth_m;
+  const double tolerance = 4.0 * camera.depth_noise.feature_sigma_m(landmark_depth_m);
   return std::abs(feature.depth_m - landmark_depth_m) < tolerance;
 }
 

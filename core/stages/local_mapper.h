@@ -18,8 +18,8 @@ namespace vsgraphs {
 struct LocalMapperOptions {
   int fusion_neighbours = 8;
   int triangulation_neighbours = 4;
-  int window_keyframes = 15;
-  int window_witnesses = 15;
+  int window_keyframes = 25;
+  int window_witnesses = 25;
   int iterations_before_dropping = 2;
   int iterations = 3;
   double sigma_px = 1.0;
