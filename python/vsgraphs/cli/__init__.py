@@ -11,9 +11,10 @@ def main() -> None:
 
     # numpy's linear algebra would start a thread per core, which nothing here uses. Before numpy is imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from vsgraphs.cli.app import app
     from vsgraphs.cli.failures import told
 
     with told():
+        from vsgraphs.cli.app import app
+
         app()
     sys.exit(0)

@@ -68,7 +68,12 @@ def write_results(outcome: RunOutcome) -> dict[str, Any]:
             failures.append((name, str(error)))
     if failures:
         others = [name for name, _ in failures[1:]]
-        raise InputError(failures[0][1] + (f" (nor {', '.join(others)})" if others else ""))
+        kept = [name for name in contents if name not in dict(failures)]
+        raise InputError(
+            failures[0][1]
+            + (f", nor {', '.join(others)}" if others else "")
+            + (f"; written: {', '.join(kept)}" if kept else "; nothing was written")
+        )
     return report
 
 
