@@ -160,6 +160,24 @@ TEST(MatchDescriptors, WantsMutualAndDistinctMatches) {
   EXPECT_TRUE(match_descriptors(a, twins, {.ratio = 0.7}).empty());
 }
 
+TEST(MatchDescriptors, TheSameCornerAtAnotherLevelIsNoRival) {
+  Rng rng(6, "same_corner", 0);
+  const Descriptor d = random_descriptor(rng);
+  const FeatureSet a({at(50, 50)}, {d}, 640, 480);
+  const std::vector<Descriptor> looks{with_flips(d, 0, 20), with_flips(d, 50, 21), with_flips(d, 90, 60)};
+  const MatchOptions options{.ratio = 0.8};
+  EXPECT_TRUE(
+      match_descriptors(a, {{at(50, 50), at(53, 52), at(300, 300)}, looks, 640, 480}, options).empty());
+  EXPECT_TRUE(
+      match_descriptors(a, {{at(50, 50), at(60, 52, 1), at(300, 300)}, looks, 640, 480}, options).empty());
+  EXPECT_EQ(match_descriptors(a, {{at(50, 50), at(53, 52, 1), at(300, 300)}, looks, 640, 480}, options),
+            (IndexPairs{{0, 0}}));
+  // Behind the twin the next rival still counts.
+  EXPECT_TRUE(
+      match_descriptors(a, {{at(50, 50), at(53, 52, 1), at(300, 300)}, looks, 640, 480}, {.ratio = 0.3})
+          .empty());
+}
+
 TEST(MatchEpipolar, KeepsToTheLine) {
   // Cameras side by side: the epipolar line of a pixel is its own row.
   Eigen::Matrix3d f;

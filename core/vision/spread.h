@@ -16,7 +16,7 @@ struct ChosenCorner {
 
 class CornerSpread {
  public:
-  // Cuts a `width` x `height` image into about `wanted` square cells and takes the best corner of every cell,
+  // Cuts a `width` x `height` image into about `wanted` / 5 square cells and takes the best corner of every cell,
   // then every cell's second best, and so on until `wanted` are chosen (the last round by score). Corners below
   // `strong` count only in cells without a strong one. Deterministic; `out` is replaced; order: by cell.
   void choose(const std::vector<Corner>& corners, int width, int height, int wanted, int strong,
