@@ -7,7 +7,7 @@
 namespace vsgraphs {
 namespace {
 
-constexpr Rgb skirting_colour{112, 62, 34};
+constexpr Rgb skirting_colour{132, 78, 46};
 constexpr double skirting_height_m = 0.08, skirting_depth_m = 0.014;
 constexpr double lamp_spacing_m = 2.4;
 
@@ -75,7 +75,7 @@ void add_skirting(SceneBuilder& builder, const WallGeometry& wall, const Tag& ta
   for (const Opening& o : low) breaks.push_back(o.along_min), breaks.push_back(o.along_max);
   breaks.push_back(wall.length);
   const Stand stand{{wall.p0.x(), wall.p0.y(), wall.z_floor}, wall.along};
-  const Material board{"wood", builder.plan().seed, skirting_colour};
+  const Material board{"grained", builder.plan().seed, skirting_colour};
   for (std::size_t i = 0; i + 1 < breaks.size(); i += 2) {
     builder.add_box(tag, stand, {breaks[i], 0, 0}, {breaks[i + 1], skirting_depth_m, skirting_height_m},
                     board, BoxSide::front | BoxSide::top | BoxSide::left | BoxSide::right);

@@ -29,7 +29,7 @@ Canvas tiles(Rng& rng, Rgb colour) {
   c.mottle(rng, 9, 10);
   c.mottle(rng, 6, 32);
   c.grain(rng, 3);
-  const Rgb grout = scaled(colour, 0.62);
+  const Rgb grout = scaled(colour, 0.8);
   for (int i = 0; i < count; ++i) {
     c.fill(i / 4.0, 0, i / 4.0 + 0.006, 1, grout);
     c.fill(0, i / 4.0, 1, i / 4.0 + 0.006, grout);
@@ -109,6 +109,15 @@ Canvas wood(Rng& rng, Rgb colour) {
   return c;
 }
 
+// Skirting boards: short dark grain that shows from across the room.
+Canvas grained(Rng& rng, Rgb colour) {
+  Canvas c(256, 64, colour);
+  c.streaks(rng, 28, 32, 4);
+  c.streaks(rng, 32, 64, 4);
+  c.grain(rng, 6);
+  return c;
+}
+
 Canvas panels(Rng& rng, Rgb colour) {
   Canvas c(256, 256, colour);
   c.grain(rng, 3);
@@ -139,6 +148,7 @@ PaintedMaterial paint_covering(const Material& m) {
   if (m.kind == "concrete") return {noisy(rng, m.colour, 8, 6, 4).image(), 1.2};
   if (m.kind == "panels") return {panels(rng, m.colour).image(), 0.6};
   if (m.kind == "wood") return {wood(rng, m.colour).image(), 0.8};
+  if (m.kind == "grained") return {grained(rng, m.colour).image(), 0.8};
   if (m.kind == "lacquer") return {noisy(rng, m.colour, 1.5, 4, 1).image(), 0.8};
   if (m.kind == "cloth") return {noisy(rng, m.colour, 5, 24, 6).image(), 0.5};
   if (m.kind == "cardboard") return {noisy(rng, m.colour, 4, 6, 3).image(), 0.6};

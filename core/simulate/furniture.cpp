@@ -92,10 +92,10 @@ void bed(Piece& p) {
 }
 
 void leaf(Piece& p, Rng& rng, const Vector3d& root, double length) {
-  const double turn = rng.uniform(0, 2 * std::numbers::pi), lean = rng.uniform(0.25, 1.1);
+  const double turn = rng.uniform(0, 2 * std::numbers::pi), lean = rng.uniform(0.1, 1.15);
   const Vector3d t(std::cos(turn) * std::sin(lean), std::sin(turn) * std::sin(lean), std::cos(lean));
   const Vector3d s = t.cross(Vector3d(std::cos(turn), std::sin(turn), -0.3)).normalized();
-  const double w = 0.3 * length;
+  const double w = 0.22 * length;
   const Polygon2 outline{
       {0.5 * w, 0},      {0.85 * w, 0.25 * length}, {w, 0.5 * length}, {0.7 * w, 0.8 * length},
       {0.5 * w, length}, {0.25 * w, 0.8 * length},  {0, 0.5 * length}, {0.15 * w, 0.25 * length}};
@@ -114,7 +114,7 @@ void plant(Piece& p) {
       p.seed % 2 ? Material{"brick", p.seed, {140, 70, 55}} : Material{"concrete", p.seed, {138, 138, 134}};
   p.box({-p.w, -p.d, 0}, {p.w, p.d, pot}, clay);
   Rng rng(p.seed, "plant", 0);
-  for (int i = 0; i < 18; ++i)
+  for (int i = 0; i < 30; ++i)
     leaf(p, rng, {rng.uniform(-0.2, 0.2) * p.w, rng.uniform(-0.2, 0.2) * p.d, pot},
          (p.h - pot) * rng.uniform(0.6, 1.0));
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double node_spacing_m = 0.2;
 constexpr int max_nodes = 96;
-constexpr double ambient = 0.42;
+constexpr double ambient = 0.46;
 constexpr double corner_reach_m = 0.28, corner_depth = 0.3;
 
 struct RoomLights {

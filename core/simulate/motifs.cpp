@@ -32,15 +32,15 @@ Canvas board(Rng& rng, double aspect) {
   const Rgb cork{150, 95, 45}, frame{85, 85, 88};
   Canvas c(512, 512, cork);
   c.mottle(rng, 10, 64);
-  c.grain(rng, 12);
+  c.grain(rng, 8);
   const Rgb papers[] = {{232, 165, 165}, {228, 222, 120}, {150, 195, 220}, {225, 225, 220}};
-  for (int i = 0; i < 15; ++i) {
+  for (int i = 0; i < 13; ++i) {
     const double w = rng.uniform(0.12, 0.22), h = aspect * w * rng.uniform(0.6, 0.95);
     const double x = rng.uniform(0.05, 0.93 - w), y = rng.uniform(0.05, 0.93 - h);
     c.fill(x, y, x + w, y + h, papers[rng.index(4)]);
     c.headline(rng, x + 0.08 * w, y + 0.1 * h, x + w * rng.uniform(0.4, 0.8), y + 0.25 * h,
                3 + static_cast<int>(rng.index(4)), {40, 40, 45});
-    c.writing(rng, x + 0.08 * w, y + 0.35 * h, x + 0.92 * w, y + 0.92 * h, 5, {75, 75, 80});
+    c.writing(rng, x + 0.08 * w, y + 0.35 * h, x + 0.92 * w, y + 0.92 * h, 5, {110, 110, 115});
     c.disc(x + 0.5 * w, y + 0.04 * h, 0.007, random_hue(rng, 0.8, 0.7));
   }
   c.outline(0, 0, 1, 1, 0.02, frame);

@@ -40,13 +40,7 @@ def load_plan(source: str | Path | Mapping[str, Any]) -> LoadedPlan:
     """
     if isinstance(source, Mapping):
         return _convert(dict(source), "plan", None)
-    path = Path(source)
-    if not path.suffix and not path.exists():
-        path = _FOLDER / f"{path.name}.json" if path.name == str(source) else path
-        if not path.is_file():
-            near = get_close_matches(str(source), plan_names(), n=1, cutoff=0.5)
-            hint = f"did you mean '{near[0]}'?" if near else f"included plans: {', '.join(plan_names())}"
-            raise InputError(f"there is no plan '{source}'; {hint}")
+    path = _path_of(source)
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -60,6 +54,18 @@ def load_plan(source: str | Path | Mapping[str, Any]) -> LoadedPlan:
     except RecursionError:
         raise InputError(f"{path}: nested too deeply for a plan") from None
     return _convert(values, str(path), path.stem)
+
+
+def _path_of(source: str | Path) -> Path:
+    path = Path(source)
+    if path.suffix or path.is_file():
+        return path
+    included = _FOLDER / f"{source}.json"  # a folder of that name beside us does not hide the included plan
+    if path.name == str(source) and included.is_file():
+        return included
+    near = get_close_matches(str(source), plan_names(), n=1, cutoff=0.5)
+    hint = f"did you mean '{near[0]}'?" if near else f"included plans: {', '.join(plan_names())}"
+    raise InputError(f"there is no plan '{source}'; {hint}")
 
 
 def _convert(values: object, source: str, name: str | None) -> LoadedPlan:

@@ -21,7 +21,7 @@ class Output:
     fps: float | None = None  # frames/s rendered, the plan's unless given
     every: int = 1  # keep each n-th frame only (thinning)
     image_format: str = "jpg"  # jpg | png
-    jpeg_quality: int = 92
+    jpeg_quality: int = 90
     labels_every: int = 5  # class and instance images with each n-th written frame; 0: none
     overwrite: bool = False  # replace a sequence an earlier call wrote there
     workers: int | None = None  # threads; the processors' number, at most 4, unless given
