@@ -1,0 +1,171 @@
+// Whole runs on a scene whose truth needs no renderer: the camera slides sideways along a painted wall, so that each
+// image is the last one shifted by whole pixels. Short, for the sanitizers run it too.
+#include "core/system/slam.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "core/base/check.h"
+#include "core/base/rng.h"
+
+namespace vsgraphs {
+namespace {
+
+constexpr int width = 320, height = 240, frame_count = 40, shift_px = 3;
+constexpr double wall_m = 2.0, fps = 30.0;
+
+Camera small_camera() {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = 262.5;
+  camera.cx = 159.5;
+  camera.cy = 119.5;
+  camera.fps = fps;
+  return camera;
+}
+
+// A strip of wall as long as the way, covered with rectangles of all sizes.
+Image<std::uint8_t> painted_wall() {
+  Image<std::uint8_t> wall(width + frame_count * shift_px, height, 128);
+  Rng rng(7, "painted_wall", 0);
+  for (int i = 0; i < 1500; ++i) {
+    const int u0 = static_cast<int>(rng.index(static_cast<std::uint32_t>(wall.width)));
+    const int v0 = static_cast<int>(rng.index(height));
+    const int u1 = std::min(wall.width, u0 + 4 + static_cast<int>(rng.index(24)));
+    const int v1 = std::min(height, v0 + 4 + static_cast<int>(rng.index(24)));
+    const auto grey = static_cast<std::uint8_t>(20 + rng.index(216));
+    for (int v = v0; v < v1; ++v) std::fill(&wall.at(u0, v), &wall.at(u1 - 1, v) + 1, grey);
+  }
+  return wall;
+}
+
+class ShortRun {
+ public:
+  explicit ShortRun(const Config& config) : slam_(config, small_camera()) {}
+
+  // Frame `index`, or a black one in its place.
+  TrackedFrame track(int index, bool black = false) {
+    RgbdFrame frame;
+    frame.timestamp_s = index / fps;
+    const ImageView<std::uint8_t> wall = wall_.view();
+    frame.grey = black ? dark_.view()
+                       : ImageView<std::uint8_t>{wall.data + index * shift_px, width, height, wall.stride};
+    frame.depth.metres = depth_.view();
+    return slam_.track(frame);
+  }
+  void track_all() {
+    for (int i = 0; i < frame_count; ++i) EXPECT_TRUE(has_pose(track(i).status)) << "frame " << i;
+    slam_.finish();
+  }
+  Slam& slam() { return slam_; }
+
+ private:
+  Image<std::uint8_t> wall_ = painted_wall();
+  Image<std::uint8_t> dark_{width, height, 0};
+  Image<float> depth_{width, height, static_cast<float>(wall_m)};
+  Slam slam_;
+};
+
+Config configured(const std::string& execution) {
+  Config config;
+  config.set("system.execution", execution);
+  return config;
+}
+
+// Largest distance from where the camera was, m. The world is the first camera, so nothing needs to be aligned.
+double largest_error_m(const std::vector<TimedPose>& trajectory) {
+  double largest = 0;
+  for (const TimedPose& pose : trajectory) {
+    const double travelled_m = pose.timestamp_s * fps * shift_px * wall_m / small_camera().fx;
+    largest =
+        std::max(largest, (pose.world_from_camera.translation() - Eigen::Vector3d(travelled_m, 0, 0)).norm());
+  }
+  return largest;
+}
+
+void expect_same_bytes(const std::vector<TimedPose>& a, const std::vector<TimedPose>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].timestamp_s, b[i].timestamp_s);
+    EXPECT_TRUE(a[i].world_from_camera.matrix() == b[i].world_from_camera.matrix()) << "frame " << i;
+  }
+}
+
+TEST(Slam, SerialRunFollowsTheCamera) {
+  ShortRun run(configured("serial"));
+  run.track_all();
+  EXPECT_EQ(run.slam().trajectory().size(), static_cast<std::size_t>(frame_count));
+  EXPECT_LT(largest_error_m(run.slam().trajectory()), 0.01);
+  EXPECT_GE(run.slam().snapshot()->keyframes().size(), 2U);
+}
+
+// Others read snapshots as fast as they can while tracking and mapping go on; the thread sanitizer watches.
+TEST(Slam, ThreadedRunFollowsTheCameraWhileOthersReadTheMap) {
+  ShortRun run(configured("threaded"));
+  std::atomic<bool> stop = false;
+  std::atomic<bool> consistent = true;
+  std::thread reader([&] {
+    while (!stop) {
+      const Snapshot map = run.slam().snapshot();
+      map->landmarks().for_each([&](LandmarkId, const Landmark& landmark) {
+        for (const Observation& seen : landmark.observations)
+          if (map->keyframes().find(seen.keyframe) == nullptr) consistent = false;
+      });
+    }
+  });
+  run.track_all();
+  stop = true;
+  reader.join();
+  EXPECT_TRUE(consistent);
+  EXPECT_LT(largest_error_m(run.slam().trajectory()), 0.01);
+}
+
+TEST(Slam, SerialRunsAreTheSameBytes) {
+  ShortRun first(configured("serial")), second(configured("serial"));
+  first.track_all();
+  second.track_all();
+  expect_same_bytes(first.slam().trajectory(), second.slam().trajectory());
+}
+
+TEST(Slam, ReplayRepeatsAThreadedRun) {
+  const std::string schedule = testing::TempDir() + "slam_test_schedule.txt";
+  Config recording = configured("threaded");
+  recording.set("system.schedule_out", schedule);
+  ShortRun recorded(recording);
+  recorded.track_all();
+  Config replaying = configured("serial");
+  replaying.set("system.replay", schedule);
+  ShortRun replayed(replaying);
+  replayed.track_all();
+  expect_same_bytes(recorded.slam().trajectory(), replayed.slam().trajectory());
+}
+
+TEST(Slam, DarknessIsSurvivedAndSaid) {
+  ShortRun run(configured("threaded"));
+  for (int i = 0; i < 15; ++i) run.track(i);
+  // The lights go out for longer than coasting is allowed.
+  for (int i = 15; i < 35; ++i) EXPECT_NE(run.track(i, true).status, TrackStatus::ok);
+  EXPECT_TRUE(has_pose(run.track(35).status));
+  run.slam().finish();
+  const std::vector<std::string> warnings = run.slam().statistics().warnings;
+  EXPECT_THAT(warnings, testing::ElementsAre(testing::HasSubstr("lost"), testing::HasSubstr("relocalised")));
+  EXPECT_LT(largest_error_m({run.slam().trajectory().back()}), 0.02);
+}
+
+TEST(Slam, BadTimestampsChangeNothing) {
+  ShortRun run(configured("serial"));
+  run.track(0);
+  run.track(1);
+  EXPECT_THROW(run.track(1), InputError);
+  EXPECT_THROW(run.track(0), InputError);
+  EXPECT_TRUE(has_pose(run.track(2).status));
+  EXPECT_EQ(run.slam().statistics().frames, 3);
+}
+
+}  // namespace
+}  // namespace vsgraphs
