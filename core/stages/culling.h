@@ -13,7 +13,7 @@ namespace vsgraphs {
 struct CullingOptions {
   double min_found_share = 0.25;
   int probation_keyframes = 3;
-  int min_observations = 3;
+  int min_observations = 2;
   double redundant_share = 0.9;
   int redundant_witnesses = 3;
 };
