@@ -6,6 +6,7 @@
 
 #include "core/solve/lanes.h"
 #include "core/solve/pose_solver.h"
+#include "core/solve/reprojection_lanes.h"
 
 namespace vsgraphs {
 
@@ -28,10 +29,9 @@ class PoseRows {
 
  private:
   struct Group {
-    Lanes x, y, z, u, v, inverse_depth;
-    Lanes weight_px, weight_depth;  // in use: 0 when switched off
-    Lanes full_px, full_depth;      // as given
-    Lanes delta;                    // Huber's threshold
+    Lanes x, y, z;                // points in the world
+    ObservationLanes seen;        // weights in use: 0 when switched off
+    Lanes full_px, full_depth;    // weights as given
   };
   Intrinsics k_;
   std::size_t count_;

@@ -80,6 +80,16 @@ TEST(PoseSolver, FortyPercentOfWrongMatchesAreFound) {
   }
 }
 
+TEST(PoseSolver, GatingFirstKeepsAGoodPoseAmongMostlyWrongMatches) {
+  const SyntheticView view = synthetic_view(400, 340, true, 9, 0.9);
+  PoseSolverOptions gated;
+  gated.gate_first = true;
+  const Se3 start = disturbed(view.world_from_camera, 0.002, 0.001);
+  const PoseSolution s = solve_pose(intrinsics, start, view.observations, {}, {}, gated);
+  EXPECT_LT(distance(s.world_from_camera, view.world_from_camera), 0.02);
+  EXPECT_GE(s.inliers, 50);
+}
+
 TEST(PoseSolver, DepthThatDisagreesDemotesTheMatchToItsPixel) {
   SyntheticView view = synthetic_view(200, 0, true, 7, 1.0);
   for (int i = 0; i < 50; ++i) view.observations[i].inverse_depth *= 0.6;  // read the surface behind

@@ -27,7 +27,7 @@ void LandmarkPart::group_observations(const BundleProblem& problem, const std::v
   group_begin_.assign(1, 0);
   for (int n : count) group_begin_.push_back(group_begin_.back() + (n + lane_count - 1) / lane_count);
   Group empty{};
-  empty.delta = lanes(1);
+  empty.seen.delta = lanes(1);
   groups_.assign(static_cast<std::size_t>(group_begin_.back()), empty);
   std::vector<int> next(variable_of_pose.size());
   for (std::size_t p = 0; p < next.size(); ++p) next[p] = lane_count * group_begin_[p];
@@ -35,12 +35,12 @@ void LandmarkPart::group_observations(const BundleProblem& problem, const std::v
     const ReprojectionObservation& o = problem.observations[i];
     const int at = next[o.pose]++, k = at % lane_count;
     Group& g = groups_[at / lane_count];
-    g.u[k] = o.u;
-    g.v[k] = o.v;
-    g.weight_px[k] = o.inv_sigma_px;
-    g.inverse_depth[k] = o.has_depth() ? o.inverse_depth : 0.0f;
-    g.weight_depth[k] = o.has_depth() ? o.inv_sigma_inverse_depth : 0.0f;
-    g.delta[k] = o.has_depth() ? huber_depth_ : huber_px_;
+    g.seen.u[k] = o.u;
+    g.seen.v[k] = o.v;
+    g.seen.weight_px[k] = o.inv_sigma_px;
+    g.seen.inverse_depth[k] = o.has_depth() ? o.inverse_depth : 0.0f;
+    g.seen.weight_depth[k] = o.has_depth() ? o.inv_sigma_inverse_depth : 0.0f;
+    g.seen.delta[k] = o.has_depth() ? huber_depth_ : huber_px_;
     g.landmark[k] = o.landmark;
     g.source[k] = static_cast<int>(i);
   }
@@ -144,10 +144,10 @@ void LandmarkPart::drop(const std::vector<ObservationFit>& fit) {
     for (int k = 0; k < lane_count && g.source[k] >= 0; ++k) {
       const ObservationFit f = fit[g.source[k]];
       if (f == ObservationFit::inlier) continue;
-      g.inverse_depth[k] = 0;
-      g.weight_depth[k] = 0;
-      g.delta[k] = huber_px_;
-      if (f == ObservationFit::outlier) g.weight_px[k] = 0;
+      g.seen.inverse_depth[k] = 0;
+      g.seen.weight_depth[k] = 0;
+      g.seen.delta[k] = huber_px_;
+      if (f == ObservationFit::outlier) g.seen.weight_px[k] = 0;
     }
   }
 }

@@ -8,7 +8,7 @@
 
 #include "core/solve/bundle/block_matrix.h"
 #include "core/solve/bundle_adjustment.h"
-#include "core/solve/lanes.h"
+#include "core/solve/reprojection_lanes.h"
 
 namespace vsgraphs {
 
@@ -43,34 +43,35 @@ class LandmarkPart {
  private:
   // Four observations of one pose; lanes that are padding or dropped have weight_px 0.
   struct Group {
-    Lanes u, v, inverse_depth, weight_px, weight_depth, delta;
+    ObservationLanes seen;
     std::array<int, lane_count> landmark{}, source{-1, -1, -1, -1};  // source: the caller's index
     std::array<int, lane_count> edge{-1, -1, -1, -1};                // -1: padding, or the pose is fixed
   };
-  // A landmark seen from one free pose; several observations may share it. J_pose' J_point = -[N; p x N].
+  // A landmark seen from one free pose; several observations may share it. J_pose' J_point = -[N; p x N] with N = M R', M
+  // the point's information in the camera frame, and p the point in the camera.
   struct Edge {
-    std::array<double, 9> n{};  // N = M R', 3x3 column-major, M the point's information in the camera frame
-    std::array<double, 3> p{};  // point in the camera
+    std::array<double, 12> values{};  // N column-major, p
+    Eigen::Map<const Eigen::Matrix3d> n() const { return Eigen::Map<const Eigen::Matrix3d>(values.data()); }
+    Eigen::Map<const Eigen::Vector3d> p() const { return Eigen::Map<const Eigen::Vector3d>(values.data() + 9); }
   };
   struct Landmark {
-    std::array<double, 6> h{};  // J_point' J_point: 00 10 20 11 21 22
-    std::array<double, 3> b{};  // -gradient
-    std::array<double, 3> padding{};
+    std::array<double, 12> values{};  // J_point' J_point: 00 10 20 11 21 22; -gradient; padding
+    const double* h() const { return values.data(); }
+    Eigen::Map<const Eigen::Vector3d> b() const { return Eigen::Map<const Eigen::Vector3d>(values.data() + 6); }
   };
   // Rows 0-3, rows 4 5 0 1 and rows 2-5 of each column of a 6x3 block: two columns of a 6x6 product, one after the other in
   // memory, are then three full registers.
   struct Tall {
     Lanes top[3], middle[3], bottom[3];
   };
-  struct PoseSums;    // accumulators of one pose, in lanes
-  struct Projection;  // of four observations
 
   void group_observations(const BundleProblem& problem, const std::vector<int>& variable_of_pose);
   void number_edges(const BundleProblem& problem, const std::vector<int>& variable_of_pose);
-  void project(const Group& group, const Se3& pose, const std::vector<Eigen::Vector3d>& landmarks, Projection& out) const;
-  void linearise_group(const Group& group, const Se3& pose, const std::vector<Eigen::Vector3d>& landmarks,
-                       PoseSums& sums);
-  void eliminate_landmark(std::size_t l, const std::array<double, 6>& inverse, double* values, Eigen::VectorXd& b);
+  ProjectionLanes project_group(const Group& group, const Se3& pose,
+                                const std::vector<Eigen::Vector3d>& landmarks) const;
+  void add_to_points(const Group& group, const Se3& pose, const ProjectionLanes& q, const PointInformation& info);
+  void prepare_edges(std::size_t l, const std::array<double, 6>& inverse, Eigen::VectorXd& b);
+  const int* subtract_column(const Edge& edge, int i, int edges, const int* pair, double* values) const;
 
   Intrinsics k_;
   double huber_px_, huber_depth_;

@@ -39,6 +39,8 @@ class DenseFactor {
   virtual ~DenseFactor() = default;
   DenseFactor(const DenseFactor&) = delete;
   DenseFactor& operator=(const DenseFactor&) = delete;
+  DenseFactor(DenseFactor&&) = delete;
+  DenseFactor& operator=(DenseFactor&&) = delete;
 
   const std::vector<VariableRef>& variables() const { return variables_; }
   int rows() const { return rows_; }
