@@ -7,7 +7,7 @@
 namespace vsgraphs {
 namespace {
 
-std::uint8_t byte(double x) { return static_cast<std::uint8_t>(std::clamp(std::lround(x), 0L, 255L)); }
+std::uint8_t byte(double x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0, 255.0) + 0.5); }
 
 }  // namespace
 
