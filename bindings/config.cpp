@@ -51,6 +51,7 @@ void bind_config(nb::module_& m) {
             for (const OptionDescription& option : c.describe_all()) list.append(to_dict(option));
             return list;
           },
+          nb::sig("def describe(self) -> list[dict[str, typing.Any]]"),
           "A list of dicts with key, type, value, default, minimum, maximum, allowed and meaning.");
 }
 

@@ -1,11 +1,28 @@
 #include <nanobind/nanobind.h>
 
 #include "bindings/bind.h"
+#include "build_info.h"
 #include "core/base/check.h"
 
 NB_MODULE(_core, m) {
   m.doc() = "The compiled core of vsgraphs. Use it through the package `vsgraphs`.";
-  nanobind::exception<vsgraphs::InputError>(m, "InputError", PyExc_ValueError);
+  // The package's own class, found when it is needed: whoever catches vsgraphs.InputError catches the core's too.
+  nanobind::register_exception_translator([](const std::exception_ptr& error, void*) {
+    try {
+      std::rethrow_exception(error);
+    } catch (const vsgraphs::InputError& e) {
+      PyErr_SetString(nanobind::module_::import_("vsgraphs.errors").attr("InputError").ptr(), e.what());
+    }
+  });
+  m.def(
+      "build_info",
+      [] {
+        nanobind::dict info;
+        info["commit"] = VSGRAPHS_COMMIT;
+        info["compiler"] = VSGRAPHS_COMPILER;
+        return info;
+      },
+      nanobind::sig("def build_info() -> dict[str, str]"), "What the module was built from: commit and compiler.");
   vsgraphs::bind_camera(m);
   vsgraphs::bind_config(m);
   vsgraphs::bind_slam(m);

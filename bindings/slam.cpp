@@ -136,6 +136,7 @@ void bind_results(nb::module_& m) {
                    "waiting, initialised, ok, coasting, lost or relocalised")
       .def_prop_ro("tracked", [](const TrackedFrame& f) { return has_pose(f.status); })
       .def_prop_ro("world_from_camera", &pose_or_none,
+                   nb::sig("def world_from_camera(self) -> numpy.typing.NDArray[numpy.float64] | None"),
                    "(4, 4) float64 as known when the frame was tracked; None without a pose. World: the first "
                    "keyframe's camera.")
       .def_prop_ro("is_keyframe", [](const TrackedFrame& f) { return f.keyframe_request != nullptr; })
@@ -144,8 +145,13 @@ void bind_results(nb::module_& m) {
   nb::class_<Map>(m, "Snapshot", "The map at one moment; it never changes.")
       .def_prop_ro("version", &Map::version)
       .def("keyframes", &keyframes_of,
+           nb::sig("def keyframes(self) -> tuple[numpy.typing.NDArray[numpy.uint32], "
+                   "numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]"),
            "(ids (N,) uint32, timestamps (N,) float64 s, world_from_camera (N, 4, 4) float64)")
-      .def("landmarks", &landmarks_of, "(points in the world (M, 3) float64 m, colours (M, 3) uint8)");
+      .def("landmarks", &landmarks_of,
+           nb::sig("def landmarks(self) -> tuple[numpy.typing.NDArray[numpy.float64], "
+                   "numpy.typing.NDArray[numpy.uint8]]"),
+           "(points in the world (M, 3) float64 m, colours (M, 3) uint8)");
 }
 
 }  // namespace
@@ -163,6 +169,9 @@ void bind_slam(nb::module_& m) {
             return slam.track(frame);
           },
           "rgb"_a, "depth"_a, "timestamp"_a,
+          nb::sig("def track(self, rgb: numpy.typing.NDArray[numpy.uint8], depth: "
+                  "numpy.typing.NDArray[numpy.uint16] | numpy.typing.NDArray[numpy.float32], timestamp: float) -> "
+                  "TrackResult"),
           "Tracks one frame; the images are only read during the call.\n\n"
           "Args:\n"
           "  rgb: uint8, (height, width, 3) in RGB order or (height, width) grey.\n"
@@ -176,10 +185,13 @@ void bind_slam(nb::module_& m) {
            "Ends the work under way; track() is an error afterwards.")
       .def("close", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(), "The same as finish().")
       .def("trajectory", &trajectory_of,
+           nb::sig("def trajectory(self) -> tuple[numpy.typing.NDArray[numpy.float64], "
+                   "numpy.typing.NDArray[numpy.float64]]"),
            "(timestamps (N,) float64 s, world_from_camera (N, 4, 4) float64) of all frames with a pose, corrected "
            "by everything learned since.")
-      .def("statistics", &statistics_of, "frames, tracked, waited_s, warnings and stages; complete after finish().")
-      .def("trace", &trace_of,
+      .def("statistics", &statistics_of, nb::sig("def statistics(self) -> dict[str, typing.Any]"),
+           "frames, tracked, waited_s, warnings and stages; complete after finish().")
+      .def("trace", &trace_of, nb::sig("def trace(self) -> list[tuple[str, str, int, int, int]]"),
            "List of (lane, stage, begin_us, duration_us, frame); complete after finish(). Time is the monotonic "
            "clock's.")
       .def_prop_ro("backlog", &Slam::backlog, "keyframes waiting for the mapper");
