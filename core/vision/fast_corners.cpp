@@ -95,7 +95,24 @@ inline void append_peaks(const std::uint8_t* above, const std::uint8_t* here, co
   }
 }
 
+// Peak of the parabola through three values of which the middle one is the largest.
+float parabola_peak(int before, int here, int after) {
+  const int bend = 2 * here - before - after;
+  return bend > 0 ? 0.5f * static_cast<float>(after - before) / static_cast<float>(bend) : 0.0f;
+}
+
 }  // namespace
+
+SubpixelShift refine(const ImageView<std::uint8_t>& image, const Corner& corner) {
+  // Vectors start left of the corner and reach at most 35 pixels right of it: into the next rows, which exist.
+  VSG_INVARIANT(corner.x >= 4 && corner.y >= 4 && corner.y + 6 < image.height && image.width > 40);
+  const Circle offsets(image.stride);
+  const std::uint8_t* p = image.row(corner.y) + corner.x - 1;
+  const U8x32 here = scores_of(p, offsets, U8x32{});
+  const U8x32 above = scores_of(p - image.stride, offsets, U8x32{});
+  const U8x32 below = scores_of(p + image.stride, offsets, U8x32{});
+  return {parabola_peak(here[0], here[1], here[2]), parabola_peak(above[1], here[1], below[1])};
+}
 
 void FastCorners::detect(const ImageView<std::uint8_t>& image, int threshold, int border,
                          std::vector<Corner>& out) {

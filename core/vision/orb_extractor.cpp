@@ -118,13 +118,15 @@ void OrbExtractor::find_keypoints() {
 Feature OrbExtractor::place(const Keypoint& keypoint, const DepthView& depth,
                             const ImageView<Rgb>& colour) const {
   const ImageView<std::uint8_t>& level = grey_.level(keypoint.level);
+  const SubpixelShift shift = refine(level, keypoint.corner);
   // Levels are aligned by their edges, half a pixel before the first centre.
-  const float u = (static_cast<float>(keypoint.corner.x) + 0.5f) * static_cast<float>(camera_.width) /
-                      static_cast<float>(level.width) -
-                  0.5f;
-  const float v = (static_cast<float>(keypoint.corner.y) + 0.5f) * static_cast<float>(camera_.height) /
-                      static_cast<float>(level.height) -
-                  0.5f;
+  const auto to_level_0 = [](int pixel, float part, int full_size, int size) {
+    return (static_cast<float>(pixel) + part + 0.5f) * static_cast<float>(full_size) /
+               static_cast<float>(size) -
+           0.5f;
+  };
+  const float u = to_level_0(keypoint.corner.x, shift.x, camera_.width, level.width);
+  const float v = to_level_0(keypoint.corner.y, shift.y, camera_.height, level.height);
   const Eigen::Vector2f undistorted = undistort_.at(u, v);
   Feature feature;
   feature.u = undistorted.x();

@@ -99,6 +99,23 @@ TEST(OrbExtractor, FindsTheSceneAgainShiftedTurnedAndScaled) {
   EXPECT_GT(scaled.precision, 0.85);
 }
 
+TEST(OrbExtractor, PositionsAreFinerThanPixels) {
+  const Bench bench;
+  const Eigen::Matrix<double, 2, 3> from_new = test::similarity(bench.image, 0, 1, {0.4, -0.3});
+  const FeatureSet a = bench.extract(test::warped(bench.image, test::similarity(bench.image, 0, 1)));
+  const FeatureSet b = bench.extract(test::warped(bench.image, from_new));
+  std::vector<double> errors;
+  for (const auto& [i, j] : match_descriptors(a, b, {.max_distance = 64, .ratio = 0.9})) {
+    if (a[i].level != 0 || b[j].level != 0) continue;
+    const Eigen::Vector2d expected = from_new * Eigen::Vector3d(b[j].u, b[j].v, 1);
+    errors.push_back((expected - Eigen::Vector2d(a[i].u, a[i].v)).norm());
+  }
+  ASSERT_GT(errors.size(), 50u);
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                   errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.35) << "whole pixels would be off by 0.5";
+}
+
 TEST(OrbExtractor, OrientationFollowsTheImage) {
   const Bench bench;
   const double turn = 0.5;
@@ -181,6 +198,20 @@ TEST(BriefPattern, ComparesDistinctPixelsInsideThePatch) {
     const std::array<int, 4> forward{p.x0, p.y0, p.x1, p.y1}, backward{p.x1, p.y1, p.x0, p.y0};
     EXPECT_TRUE(seen.insert(forward).second);
     EXPECT_FALSE(seen.contains(backward));
+  }
+}
+
+TEST(SteeredBrief, BitIsComparisonOfTurnedPixels) {
+  const Image<std::uint8_t> image = test::textured_image(64, 64, 4);
+  const SteeredBrief brief(64);
+  const Descriptor upright = brief.describe(image.view(), 30, 33, 0);
+  const Descriptor quarter = brief.describe(image.view(), 30, 33, std::numbers::pi_v<float> / 2);
+  for (std::size_t i = 0; i < 256; ++i) {
+    const BriefPair& p = brief_pattern[i];
+    EXPECT_EQ(upright.words[i / 64] >> (i % 64) & 1,
+              image.at(30 + p.x0, 33 + p.y0) < image.at(30 + p.x1, 33 + p.y1));
+    EXPECT_EQ(quarter.words[i / 64] >> (i % 64) & 1,
+              image.at(30 - p.y0, 33 + p.x0) < image.at(30 - p.y1, 33 + p.x1));
   }
 }
 
