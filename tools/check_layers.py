@@ -80,6 +80,8 @@ WORD_RULES = (
     ),
 )  # fmt: skip
 
+# Headers the build writes; they lie in no folder of the project.
+GENERATED = {"build_info.h"}
 VAGUE_NAMES = {"util", "utils", "common", "helper", "helpers", "manager", "misc"}
 
 
@@ -183,7 +185,7 @@ def _line_problems(layers: dict[str, Layer], name: Path, line: str) -> Iterator[
     include = re.match(r'\s*#\s*include\s*(["<])([^">]+)[">]', line)
     if include:
         quote, included = include.groups()
-        if quote == '"' and included.split("/")[0] not in {"core", "bindings"}:
+        if quote == '"' and included.split("/")[0] not in {"core", "bindings"} | GENERATED:
             yield f'includes "{included}": write the path from the project\'s root'
         elif not in_core:
             if included.startswith("opencv2/"):
