@@ -24,7 +24,7 @@ SubpixelShift refine(const ImageView<std::uint8_t>& image, const Corner& corner)
 
 class FastCorners {
  public:
-  // Appends nothing: `out` becomes the corners with score >= `threshold`, largest in their 3x3 neighbourhood, at
+  // `out` becomes the corners with score >= `threshold`, largest in their 3x3 neighbourhood, at
   // least `border` pixels from every edge, row by row. Needs border >= 3 and 32 usable columns; an image
   // smaller than that has no corners. Exact, and 32 pixels at a time: about 0.3 ms for 640x480.
   void detect(const ImageView<std::uint8_t>& image, int threshold, int border, std::vector<Corner>& out);

@@ -1,15 +1,18 @@
 """Learns the 256 comparisons of brief_pattern.cpp and prints that file.
 
-Run: python core/vision/learn_brief_pattern.py > core/vision/brief_pattern.cpp   (numpy and Pillow; about 2 minutes, 3 GB)
+Run: python core/vision/learn_brief_pattern.py > core/vision/brief_pattern.cpp (numpy and Pillow; about 2
+minutes, 3 GB)
 
-Training data are made here, so that anybody gets the same table: "dead leaves" images and views of them that are
-turned, scaled, sheared, re-exposed, blurred and noisy. Corners are found and oriented in both views separately, as
-the extractor does, so that errors of place, scale and orientation are those a descriptor meets in use.
+Training data are made here, so that anybody gets the same table: "dead leaves" images and views of them
+that are turned, scaled, sheared, re-exposed, blurred and noisy. Corners are found and oriented in both
+views separately, as the extractor does, so that errors of place, scale and orientation are those a
+descriptor meets in use.
 
-Choice: greedy. Each step adds the comparison that best separates the distances of matching patches from those of
-others, J = (mean_other - mean_same) / sqrt(var_other + var_same): a comparison is worth the more the less often it
-flips between views, and the less it repeats what the chosen ones already say. (Rublee et al., ICCV 2011, choose by
-variance and correlation alone; the criterion here is Fisher's, as in Trzcinski et al., "BinBoost", CVPR 2013.)
+Choice: greedy. Each step adds the comparison that best separates the distances of matching patches from
+those of others, J = (mean_other - mean_same) / sqrt(var_other + var_same): a comparison is worth the more
+the less often it flips between views, and the less it repeats what the chosen ones already say. (Rublee et
+al., ICCV 2011, choose by variance and correlation alone; the criterion here is Fisher's, as in Trzcinski et
+al., "BinBoost", CVPR 2013.)
 """
 
 from __future__ import annotations
@@ -51,10 +54,15 @@ def dead_leaves(rng: np.random.Generator, width: int = 640, height: int = 480) -
         du, dv = du - u0, dv - v0
         x, y = np.cos(turn) * du + np.sin(turn) * dv, np.cos(turn) * dv - np.sin(turn) * du
         aspect = rng.uniform(0.2, 1.0)
-        inside = (abs(x) < size) & (abs(y) < aspect * size) if rng.random() < 0.6 else x**2 + (y / aspect) ** 2 < size**2
+        inside = (
+            (abs(x) < size) & (abs(y) < aspect * size)
+            if rng.random() < 0.6
+            else x**2 + (y / aspect) ** 2 < size**2
+        )
         shade = rng.uniform(20, 235) + rng.uniform(-1, 1) * du + rng.uniform(-1, 1) * dv
         image[rows, cols][inside] = shade[inside]
-    return np.clip(image, 0, 255).astype(np.uint8)
+    levels: Bytes = np.clip(image, 0, 255).astype(np.uint8)
+    return levels
 
 
 def smooth(image: Floats, taps: list[float]) -> Floats:
@@ -64,7 +72,8 @@ def smooth(image: Floats, taps: list[float]) -> Floats:
         pad = [(reach, reach) if a == axis else (0, 0) for a in (0, 1)]
         padded = np.pad(image, pad, mode="edge")
         size = image.shape[axis]
-        image = sum(t * np.take(padded, range(k, k + size), axis=axis) for k, t in enumerate(taps))
+        shifted = [t * np.take(padded, range(k, k + size), axis=axis) for k, t in enumerate(taps)]
+        image = np.sum(shifted, axis=0)
     return image
 
 
@@ -73,7 +82,7 @@ def camera_view(rng: np.random.Generator, image: Floats) -> Bytes:
     image = smooth(image, [0.15, 0.7, 0.15])
     if rng.random() < 0.5:
         length = rng.integers(2, 5)
-        image = sum(np.roll(image, k, axis=int(rng.integers(2))) for k in range(length)) / length
+        image = np.mean([np.roll(image, k, axis=int(rng.integers(2))) for k in range(length)], axis=0)
     image = 128 + rng.uniform(0.6, 1.3) * (image - 128) + rng.uniform(-25, 25)
     return np.clip(image + rng.normal(0, rng.uniform(1, 5), image.shape), 0, 255).astype(np.uint8)
 
@@ -100,7 +109,7 @@ POINTS = np.array([(u, v) for v in range(-RADIUS, RADIUS + 1) for u in range(-RA
 
 
 def describe(image: Bytes) -> tuple[Floats, NDArray[np.int64], Bytes]:
-    """Corners of all levels: positions (n, 2) in level-0 px, levels (n), smoothed turned patches (n, POINTS)."""
+    """Corners of all levels: positions (n, 2) px at level 0, levels (n), smooth patches (n, POINTS)."""
     places, levels, patches = [], [], []
     for level in range(LEVELS):
         size = (round(image.shape[1] / FACTOR**level), round(image.shape[0] / FACTOR**level))
@@ -144,7 +153,9 @@ def matching_patches(rng: np.random.Generator, image: Bytes) -> tuple[Bytes, Byt
     return patch_a[good], patch_b[b[good]]
 
 
-def learn(rng: np.random.Generator, same_a: Bytes, same_b: Bytes, groups: NDArray[np.int64]) -> list[tuple[int, int]]:
+def learn(
+    rng: np.random.Generator, same_a: Bytes, same_b: Bytes, groups: NDArray[np.int64]
+) -> list[tuple[int, int]]:
     """Indices into POINTS of the chosen comparisons."""
     other = np.concatenate([rng.permutation(np.flatnonzero(groups == g)) for g in np.unique(groups)])
     order = np.argsort(groups, kind="stable")
@@ -182,12 +193,17 @@ def learn(rng: np.random.Generator, same_a: Bytes, same_b: Bytes, groups: NDArra
             mean_sum[k] += float(s[1][best])
             var_sum[k] = float(var[k][best])
             distance[k] += s[0][best]
-    print(f"{same.shape[1]} pairs, J = {quality[best]:.3f}, mean {mean_sum[0]:.1f} / {mean_sum[1]:.1f}", file=sys.stderr)
+    sys.stderr.write(
+        f"{same.shape[1]} pairs, J = {quality[best]:.3f}, mean {mean_sum[0]:.1f} / {mean_sum[1]:.1f}" + "\n"
+    )
     return [pairs[k] for k in chosen]
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    """Learn the comparisons and write brief_pattern.cpp to standard output."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--images", type=Path, help="folder of photographs to learn from instead")
     arguments = parser.parse_args()
     rng = np.random.default_rng(SEED)
@@ -200,12 +216,12 @@ def main() -> None:
         seconds.append(b)
         groups.append(np.full(len(a), k))
     chosen = learn(rng, np.concatenate(firsts), np.concatenate(seconds), np.concatenate(groups))
-    cells = ["{%d, %d, %d, %d}," % (*POINTS[i], *POINTS[j]) for i, j in chosen]
+    cells = [f"{{{', '.join(str(c) for c in (*POINTS[i], *POINTS[j]))}}}," for i, j in chosen]
     rows = "\n".join("    " + " ".join(cells[k : k + 5]) for k in range(0, BITS, 5))
-    print('#include "core/vision/brief_pattern.h"\n\nnamespace vsgraphs {\n')
-    print("// Made by learn_brief_pattern.py; do not edit.\n// clang-format off")
-    print("const std::array<BriefPair, 256> brief_pattern{{\n" + rows + "\n}};")
-    print("// clang-format on\n\n}  // namespace vsgraphs")
+    sys.stdout.write('#include "core/vision/brief_pattern.h"\n\nnamespace vsgraphs {\n\n')
+    sys.stdout.write("// Made by learn_brief_pattern.py; do not edit.\n// clang-format off\n")
+    sys.stdout.write("const std::array<BriefPair, 256> brief_pattern{{\n" + rows + "\n}};\n")
+    sys.stdout.write("// clang-format on\n\n}  // namespace vsgraphs\n")
 
 
 if __name__ == "__main__":
