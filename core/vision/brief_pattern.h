@@ -6,7 +6,8 @@
 
 namespace vsgraphs {
 
-// Bit = smoothed intensity at (x0, y0) < at (x1, y1); pixels from the patch's centre, x right, y down, within 14 px.
+// Bit = smoothed intensity at (x0, y0) < at (x1, y1); pixels from the patch's centre, x right, y down, within
+// 14 px.
 struct BriefPair {
   std::int8_t x0, y0, x1, y1;
 };

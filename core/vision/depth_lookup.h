@@ -1,5 +1,5 @@
-// Depth at a feature: a number that can be trusted, or none. Corners like to sit where two surfaces meet in the
-// image, and there the sensor's pixel belongs to one or the other by chance.
+// Depth at a feature: a number that can be trusted, or none. Corners like to sit where two surfaces meet in
+// the image, and there the sensor's pixel belongs to one or the other by chance.
 #pragma once
 
 #include <cstdint>

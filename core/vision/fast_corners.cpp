@@ -32,8 +32,8 @@ constexpr std::array<std::array<int, 2>, 16> circle{{{0, -3},
                                                      {-2, -2},
                                                      {-1, -3}}};
 
-// Largest over the 16 arcs of the smallest of nine neighbours. The arcs from k and from k+1 share eight values, so
-// both are covered by min(shared, max(first, last)).
+// Largest over the 16 arcs of the smallest of nine neighbours. The arcs from k and from k+1 share eight
+// values, so both are covered by min(shared, max(first, last)).
 inline U8x32 best_arc(const U8x32 (&d)[16]) {
   U8x32 pairs[8], fours[8];
   for (int k = 0; k < 8; ++k) pairs[k] = min(d[2 * k + 1], d[(2 * k + 2) & 15]);
@@ -104,7 +104,8 @@ float parabola_peak(int before, int here, int after) {
 }  // namespace
 
 SubpixelShift refine(const ImageView<std::uint8_t>& image, const Corner& corner) {
-  // Vectors start left of the corner and reach at most 35 pixels right of it: into the next rows, which exist.
+  // Vectors start left of the corner and reach at most 35 pixels right of it: into the next rows, which
+  // exist.
   VSG_INVARIANT(corner.x >= 4 && corner.y >= 4 && corner.y + 6 < image.height && image.width > 40);
   const Circle offsets(image.stride);
   const std::uint8_t* p = image.row(corner.y) + corner.x - 1;

@@ -14,9 +14,10 @@ struct Corner {
   std::uint8_t score = 0;  // the largest threshold, less one, at which the pixel is still a corner
 };
 
-// Where between the pixels the score peaks, relative to the corner: a parabola through its neighbours' scores along
-// x and along y; within half a pixel. Halves the error of position against exact truth (0.85 to 0.45 px over all
-// levels, rendered images), where a gradient fit in a 5x5 to 9x9 window gained nothing. About 0.1 us.
+// Where between the pixels the score peaks, relative to the corner: a parabola through its neighbours' scores
+// along x and along y; within half a pixel. Halves the error of position against exact truth (0.85 to 0.45 px
+// over all levels, rendered images), where a gradient fit in a 5x5 to 9x9 window gained nothing. About 0.1
+// us.
 struct SubpixelShift {
   float x = 0, y = 0;
 };

@@ -77,7 +77,8 @@ std::vector<GreyPyramid::Tap> GreyPyramid::taps(int from, int to) {
   std::vector<Tap> result;
   const double ratio = static_cast<double>(from) / to;
   for (int i = 0; i < to; ++i) {
-    // Pixel centres are at integers, so images are aligned by their edges: half a pixel before the first centre.
+    // Pixel centres are at integers, so images are aligned by their edges: half a pixel before the first
+    // centre.
     const double at = (i + 0.5) * ratio - 0.5;
     const int first = std::clamp(static_cast<int>(std::floor(at)), 0, from - 2);
     const int weight = static_cast<int>(std::lround((at - first) * 128));

@@ -1,6 +1,6 @@
 // A grey image at falling sizes, each level made from the one before it, with a smoothed copy of every level.
-// Buffers are allocated once and shared by all levels at one stride, so that a table of pixel offsets made for
-// one level serves them all.
+// Buffers are allocated once and shared by all levels at one stride, so that a table of pixel offsets made
+// for one level serves them all.
 #pragma once
 
 #include <cstdint>

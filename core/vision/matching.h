@@ -34,15 +34,16 @@ struct MatchOptions {
 
 using IndexPairs = std::vector<std::pair<int, int>>;
 
-// Per point the index of its feature, or -1. A feature goes to the point closest to it in descriptor, others go
-// without. The second best counts for the ratio only at the best one's level, as neighbouring levels often hold
-// the same corner. `taken`: one flag per feature, nonzero ones are skipped; empty: none.
-// Throws InputError if `taken` has another size. 1000 points with windows of 30 px: about 0.2 ms.
+// Per point the index of its feature, or -1. A feature goes to the point closest to it in descriptor, others
+// go without. The second best counts for the ratio only at the best one's level, as neighbouring levels often
+// hold the same corner. `taken`: one flag per feature, nonzero ones are skipped; empty: none. Throws
+// InputError if `taken` has another size. 1000 points with windows of 30 px: about 0.2 ms.
 std::vector<int> match_projected(std::span<const ProjectedPoint> points, const FeatureSet& features,
                                  const MatchOptions& options, std::span<const std::uint8_t> taken = {});
 
-// Brute force: pairs (index in a, index in b) that are each other's nearest, ascending in a. The ratio is tested
-// from a's side; the same corner found at another level (within 6 px) is no rival. 1000 x 1000 takes about 1.9 ms. The second form sees only the given indices (ascending).
+// Brute force: pairs (index in a, index in b) that are each other's nearest, ascending in a. The ratio is
+// tested from a's side; the same corner found at another level (within 6 px) is no rival. 1000 x 1000 takes
+// about 1.9 ms. The second form sees only the given indices (ascending).
 IndexPairs match_descriptors(const FeatureSet& a, const FeatureSet& b, const MatchOptions& options);
 IndexPairs match_descriptors(const FeatureSet& a, std::span<const int> subset_a, const FeatureSet& b,
                              std::span<const int> subset_b, const MatchOptions& options);
@@ -54,7 +55,8 @@ IndexPairs match_epipolar(const FeatureSet& a, std::span<const int> subset_a, co
                           std::span<const int> subset_b, const Eigen::Matrix3d& fundamental,
                           const ScalePyramid& pyramid, double max_sigmas, const MatchOptions& options);
 
-// The descriptor with the least median distance to the others (ties: the first). Throws InputError when empty.
+// The descriptor with the least median distance to the others (ties: the first). Throws InputError when
+// empty.
 Descriptor representative(std::span<const Descriptor> descriptors);
 
 }  // namespace vsgraphs

@@ -25,8 +25,8 @@ std::vector<Descriptor> gather(const FeatureSet& set, std::span<const int> subse
   return result;
 }
 
-// One corner is often found at two neighbouring levels, a few pixels apart. To take the one for the other does
-// no harm, so they are no rivals of each other.
+// One corner is often found at two neighbouring levels, a few pixels apart. To take the one for the other
+// does no harm, so they are no rivals of each other.
 bool same_corner(const Feature& a, const Feature& b) {
   constexpr float reach_px = 6;
   return a.level != b.level && std::abs(a.u - b.u) < reach_px && std::abs(a.v - b.v) < reach_px;
@@ -43,7 +43,8 @@ void keep_common_turn(const FeatureSet& a, const FeatureSet& b, IndexPairs& pair
   pairs.resize(count);
 }
 
-// `for_candidates(i, f)` calls f(j, distance) for every candidate of the i-th feature, by positions in the subsets.
+// `for_candidates(i, f)` calls f(j, distance) for every candidate of the i-th feature, by positions in the
+// subsets.
 template <typename ForCandidates>
 IndexPairs mutual_pairs(const FeatureSet& a, std::span<const int> subset_a, const FeatureSet& b,
                         std::span<const int> subset_b, const MatchOptions& options,

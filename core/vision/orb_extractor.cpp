@@ -26,7 +26,8 @@ void require_size(int width, int height, const Camera& camera, const char* what)
                     std::to_string(camera.height) + "; correct the camera's width and height");
 }
 
-// A level's share falls with its size in one dimension, so that coarse levels keep enough to be matched from afar.
+// A level's share falls with its size in one dimension, so that coarse levels keep enough to be matched from
+// afar.
 std::vector<int> shares(const OrbOptions& options) {
   std::vector<int> wanted;
   double sum = 0;

@@ -46,10 +46,10 @@ class OrbExtractor {
   // Throws InputError if the options or the camera make no sense.
   OrbExtractor(const OrbOptions& options, const Camera& camera);
 
-  // Features of one frame, strongest first, so that any prefix is a well-spread choice of the best. Positions are
-  // undistorted; depth and colour are read at the distorted pixel. `colour` may be empty (colours stay black).
-  // The same input gives the same bytes. Throws InputError if a size differs from the camera's. About 2.5 ms for
-  // 640x480 and 1000 features.
+  // Features of one frame, strongest first, so that any prefix is a well-spread choice of the best. Positions
+  // are undistorted; depth and colour are read at the distorted pixel. `colour` may be empty (colours stay
+  // black). The same input gives the same bytes. Throws InputError if a size differs from the camera's.
+  // About 2.5 ms for 640x480 and 1000 features.
   FeatureSet extract(const ImageView<std::uint8_t>& grey, const DepthView& depth,
                      const ImageView<Rgb>& colour);
 

@@ -6,8 +6,8 @@
 
 namespace vsgraphs {
 
-// Per difference of orientation (rad, any range) whether it lies in one of the three fullest of 30 bins; the second
-// and third count only when they hold at least a tenth of the first.
+// Per difference of orientation (rad, any range) whether it lies in one of the three fullest of 30 bins; the
+// second and third count only when they hold at least a tenth of the first.
 std::vector<bool> consistent_rotation(std::span<const float> differences_rad);
 
 }  // namespace vsgraphs

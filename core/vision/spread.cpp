@@ -6,8 +6,8 @@
 namespace vsgraphs {
 namespace {
 
-// Corners a cell gives when all are full. One per cell spreads best but takes corners that are not found again;
-// five give 10 % more matches between views and the most certain pose of 1, 3, 5, 8, 16 and 40.
+// Corners a cell gives when all are full. One per cell spreads best but takes corners that are not found
+// again; five give 10 % more matches between views and the most certain pose of 1, 3, 5, 8, 16 and 40.
 constexpr double corners_per_cell = 5;
 
 }  // namespace

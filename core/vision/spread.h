@@ -1,5 +1,5 @@
-// Chooses which corners of an image to keep: the best ones, but spread over the image, because a pose is held by
-// where its features lie more than by how strong they are.
+// Chooses which corners of an image to keep: the best ones, but spread over the image, because a pose is held
+// by where its features lie more than by how strong they are.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,10 @@ struct ChosenCorner {
 
 class CornerSpread {
  public:
-  // Cuts a `width` x `height` image into about `wanted` / 5 square cells and takes the best corner of every cell,
-  // then every cell's second best, and so on until `wanted` are chosen (the last round by score). Corners below
-  // `strong` count only in cells without a strong one. Deterministic; `out` is replaced; order: by cell.
+  // Cuts a `width` x `height` image into about `wanted` / 5 square cells and takes the best corner of every
+  // cell, then every cell's second best, and so on until `wanted` are chosen (the last round by score).
+  // Corners below `strong` count only in cells without a strong one. Deterministic; `out` is replaced; order:
+  // by cell.
   void choose(const std::vector<Corner>& corners, int width, int height, int wanted, int strong,
               std::vector<ChosenCorner>& out);
 

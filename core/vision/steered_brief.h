@@ -1,6 +1,6 @@
-// ORB's orientation and descriptor (Rublee et al., "ORB: an efficient alternative to SIFT or SURF", ICCV 2011):
-// the patch's intensity centroid gives an angle (Rosin 1999), and the comparisons of BRIEF (Calonder et al., ECCV
-// 2010) are turned by it.
+// ORB's orientation and descriptor (Rublee et al., "ORB: an efficient alternative to SIFT or SURF", ICCV
+// 2011): the patch's intensity centroid gives an angle (Rosin 1999), and the comparisons of BRIEF (Calonder
+// et al., ECCV 2010) are turned by it.
 #pragma once
 
 #include <cstdint>

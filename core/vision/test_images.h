@@ -1,5 +1,5 @@
-// Images for tests and benchmarks: overlapping shaded discs and boxes at all sizes (the "dead leaves" model, whose
-// statistics are close to those of photographs), and views of them turned, scaled and shifted.
+// Images for tests and benchmarks: overlapping shaded discs and boxes at all sizes (the "dead leaves" model,
+// whose statistics are close to those of photographs), and views of them turned, scaled and shifted.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,8 +41,8 @@ inline Image<std::uint8_t> textured_image(int width, int height, std::uint64_t s
   return image;
 }
 
-// The image seen through `from_new`, which takes new pixels to old ones (2x3: linear part and shift). Pixels are
-// averaged over 3x3 samples, so that shrinking does not alias.
+// The image seen through `from_new`, which takes new pixels to old ones (2x3: linear part and shift). Pixels
+// are averaged over 3x3 samples, so that shrinking does not alias.
 inline Image<std::uint8_t> warped(const Image<std::uint8_t>& image,
                                   const Eigen::Matrix<double, 2, 3>& from_new) {
   Image<std::uint8_t> out(image.width, image.height);
@@ -68,8 +68,8 @@ inline Image<std::uint8_t> warped(const Image<std::uint8_t>& image,
   return out;
 }
 
-// A turn by `angle_rad` (clockwise on the screen) and a growth by `scale` about the image's centre, then a shift,
-// as the map from new pixels to old ones.
+// A turn by `angle_rad` (clockwise on the screen) and a growth by `scale` about the image's centre, then a
+// shift, as the map from new pixels to old ones.
 inline Eigen::Matrix<double, 2, 3> similarity(const Image<std::uint8_t>& image, double angle_rad,
                                               double scale,
                                               const Eigen::Vector2d& shift = Eigen::Vector2d::Zero()) {
