@@ -19,12 +19,8 @@ inline constexpr int no_distance = 257;
 constexpr MatchKey make_key(int distance, std::size_t index) {
   return static_cast<MatchKey>(distance) << 16 | static_cast<MatchKey>(index);
 }
-constexpr int distance_of(MatchKey key) {
-  return key == no_key ? no_distance : static_cast<int>(key >> 16);
-}
-constexpr int index_of(MatchKey key) {
-  return static_cast<int>(key & 0xffffu);
-}
+constexpr int distance_of(MatchKey key) { return key == no_key ? no_distance : static_cast<int>(key >> 16); }
+constexpr int index_of(MatchKey key) { return static_cast<int>(key & 0xffffu); }
 
 struct BestTwo {
   MatchKey best = no_key, second = no_key;
