@@ -13,8 +13,6 @@ namespace {
 
 // Share of the noise that hits all channels alike; what is left differs from channel to channel.
 constexpr float common_share = 0.9f, own_share = 0.44f;
-// Demosaicing spreads noise to the neighbour.
-constexpr float spill = 0.1f;
 constexpr std::size_t table_size = 16384;
 
 // Normal numbers by the hundred thousand would cost more than the rendering: a table is read from random places.
@@ -78,12 +76,11 @@ void develop(const NoiseOptions& noise, int frame, float scale, const std::vecto
       // Stretches of at most a table's length, so that images of any width work.
       for (std::size_t begin = 0; begin < width; begin += table_size / 4) {
         const std::size_t count = std::min(width - begin, table_size / 4);
-        const float* common = table.stretch(rng, count + 1);
+        const float* common = table.stretch(rng, count);
         const float* own = table.stretch(rng, 3 * count);
         for (std::size_t i = 0; i < count; ++i)
           for (std::size_t k = 0; k < 3; ++k)
-            row[3 * (begin + i) + k] +=
-                common_share * (common[i] + spill * common[i + 1]) + own_share * own[3 * i + k];
+            row[3 * (begin + i) + k] += common_share * common[i] + own_share * own[3 * i + k];
       }
     }
     Rgb* out = &rgb.at(0, v);

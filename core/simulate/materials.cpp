@@ -8,6 +8,7 @@ namespace vsgraphs {
 
 PaintedMaterial paint_material(const Material& material) {
   PaintedMaterial painted = paint_covering(material);
+  if (painted.image.empty()) painted = paint_print(material);
   if (painted.image.empty()) painted = paint_motif(material);
   VSG_INVARIANT(!painted.image.empty());
   return painted;

@@ -28,8 +28,9 @@ struct PaintedMaterial {
 // Throws InvariantError for an unknown kind: plans are checked before they get here.
 PaintedMaterial paint_material(const Material& material);
 
-// The two halves of the table; empty image if the kind is not theirs.
+// The parts of the table; empty image if the kind is not theirs.
 PaintedMaterial paint_covering(const Material& material);
+PaintedMaterial paint_print(const Material& material);
 PaintedMaterial paint_motif(const Material& material);
 
 // Each distinct material painted once. Ids are indices in order of first use.

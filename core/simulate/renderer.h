@@ -34,7 +34,7 @@ struct NoiseOptions {
   double exposure_time_s = 0.010;
 
   bool image_noise = true;
-  double image_sigma = 2.1;  // grey levels, mostly alike in all channels
+  double image_sigma = 2.4;  // grey levels, mostly alike in all channels
 
   static NoiseOptions none();
   void validate() const;  // InputError naming the option

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double near_m = 0.02;
 // Spans grow by this much so that rounding cannot open a crack between faces that share an edge.
-constexpr float span_margin_px = 1e-3f;
+constexpr double span_margin_px = 1e-6;
 
 }  // namespace
 
@@ -57,48 +57,38 @@ void VisibilityBuffer::add_contour(const Polygon2& contour, const Face& face, co
   };
   for (std::size_t i = 0; i < clipped_.size(); ++i) {
     Eigen::Vector2d p = pixel(clipped_[i]), q = pixel(clipped_[(i + 1) % clipped_.size()]);
-    bounds_[0] = std::min(bounds_[0], static_cast<float>(p.x())),
-    bounds_[1] = std::max(bounds_[1], static_cast<float>(p.x()));
-    bounds_[2] = std::min(bounds_[2], static_cast<float>(p.y())),
-    bounds_[3] = std::max(bounds_[3], static_cast<float>(p.y()));
+    bounds_[0] = std::min(bounds_[0], p.x()), bounds_[1] = std::max(bounds_[1], p.x());
+    bounds_[2] = std::min(bounds_[2], p.y()), bounds_[3] = std::max(bounds_[3], p.y());
     if (p.y() > q.y()) std::swap(p, q);
-    // Only rows of the image matter; cutting here keeps far-away ends from costing digits.
-    const double v_min = std::max(p.y(), -1.0), v_max = std::min(q.y(), static_cast<double>(height_));
-    if (v_min >= v_max) continue;
-    const double slope = (q.x() - p.x()) / (q.y() - p.y());
-    const double limit = 1e7, u = std::clamp(p.x() + (v_min - p.y()) * slope, -limit, limit);
-    edges_.push_back({static_cast<float>(v_min), static_cast<float>(v_max), static_cast<float>(u),
-                      static_cast<float>(slope)});
+    if (q.y() <= 0 || p.y() > height_ - 1) continue;  // crosses no row
+    edges_.push_back({p.y(), q.y(), p.x(), (q.x() - p.x()) / std::max(q.y() - p.y(), 1e-300)});
   }
 }
 
 bool VisibilityBuffer::project(const Face& face, const View& view) {
   edges_.clear();
-  constexpr float far = std::numeric_limits<float>::max();
+  constexpr double far = std::numeric_limits<double>::max();
   bounds_[0] = bounds_[2] = far;
   bounds_[1] = bounds_[3] = -far;
   for (const Polygon2& contour : face.contours) add_contour(contour, face, view);
-  return !edges_.empty() && bounds_[0] < static_cast<float>(width_) && bounds_[1] > -1 &&
-         bounds_[2] < static_cast<float>(height_) && bounds_[3] > -1;
+  return !edges_.empty() && bounds_[0] < width_ && bounds_[1] > -1 && bounds_[2] < height_ && bounds_[3] > -1;
 }
 
 void VisibilityBuffer::fill(std::int32_t index, const FaceView& face_view) {
-  const int v0 = std::max(0, static_cast<int>(std::ceil(bounds_[2])));
-  const int v1 = static_cast<int>(std::min(static_cast<float>(height_ - 1), std::floor(bounds_[3])));
+  const int v0 = static_cast<int>(std::ceil(std::max(bounds_[2], 0.0)));
+  const int v1 = static_cast<int>(std::floor(std::min(bounds_[3], height_ - 1.0)));
   const float step = static_cast<float>(face_view.inverse_depth.a);
   for (int v = v0; v <= v1; ++v) {
-    const float y = static_cast<float>(v);
     crossings_.clear();
     for (const Edge& e : edges_)
-      if (e.v_min <= y && y < e.v_max) crossings_.push_back(e.u_at_v_min + (y - e.v_min) * e.slope);
+      if (e.v_min <= v && v < e.v_max) crossings_.push_back(e.u_at_v_min + (v - e.v_min) * e.slope);
     std::sort(crossings_.begin(), crossings_.end());
     float* depth = inverse_depths_.data() + static_cast<std::ptrdiff_t>(v) * width_;
     std::int32_t* face = faces_.data() + static_cast<std::ptrdiff_t>(v) * width_;
     const float start = static_cast<float>(face_view.inverse_depth.b * v + face_view.inverse_depth.c);
     for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
-      const float left = std::max(0.0f, std::ceil(crossings_[i] - span_margin_px));
-      const float right =
-          std::min(static_cast<float>(width_ - 1), std::floor(crossings_[i + 1] + span_margin_px));
+      const double left = std::max(0.0, std::ceil(crossings_[i] - span_margin_px));
+      const double right = std::min(width_ - 1.0, std::floor(crossings_[i + 1] + span_margin_px));
       if (right < left) continue;
       const int u1 = static_cast<int>(right);
       for (int u = static_cast<int>(left); u <= u1; ++u) {

@@ -56,7 +56,7 @@ class VisibilityBuffer {
 
  private:
   struct Edge {
-    float v_min, v_max, u_at_v_min, slope;
+    double v_min, v_max, u_at_v_min, slope;
   };
   bool project(const Face& face, const View& view);
   void add_contour(const Polygon2& contour, const Face& face, const View& view);
@@ -68,8 +68,8 @@ class VisibilityBuffer {
   std::vector<FaceView> views_;
   std::vector<Edge> edges_;               // of the face at hand
   std::vector<Eigen::Vector3d> clipped_;  // contour at hand, in the camera
-  std::vector<float> crossings_;          // of the row at hand
-  float bounds_[4]{};                     // u_min, u_max, v_min, v_max of the face at hand
+  std::vector<double> crossings_;         // of the row at hand
+  double bounds_[4]{};                    // u_min, u_max, v_min, v_max of the face at hand
 };
 
 // Rooms that can be seen from a camera: its own and, through the doorways in view, their neighbours.
