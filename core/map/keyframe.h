@@ -2,20 +2,32 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/geometry/se3.h"
+#include "core/map/depth_grid.h"
 #include "core/map/features.h"
 #include "core/map/ids.h"
 
 namespace vsgraphs {
+
+// Where one keyframe stands as seen from another, measured by aligning their surfaces. Made where landmarks are too
+// few to hold the keyframe by themselves.
+struct SurfaceLink {
+  KeyframeId to;
+  Se3 to_from_camera;
+  Matrix6d information = Matrix6d::Zero();  // tangent on the right of to_from_camera
+};
 
 struct Keyframe {
   std::int64_t frame_index = 0;
   double timestamp_s = 0;
   Se3 world_from_camera;
   std::shared_ptr<const FeatureSet> features;  // never changes; shared with every snapshot
-  std::vector<LandmarkId> landmarks;           // per feature; invalid where none
+  std::shared_ptr<const DepthGrid> surface;    // likewise
+  std::optional<SurfaceLink> surface_link;
+  std::vector<LandmarkId> landmarks;  // per feature; invalid where none
 };
 
 // What is left of a keyframe that was culled: where it stood, seen from a keyframe that stayed.

@@ -1,8 +1,11 @@
 #include "core/solve/window.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "core/solve/factors/relative_pose.h"
 
 namespace vsgraphs {
 
@@ -45,6 +48,18 @@ void gather_fixed(const Map& map, Window& window, int max_fixed) {
   window.fixed = std::move(witnesses);
 }
 
+// Keyframes that surface links chain to the window's, as those may share no landmark with it.
+void add_linked(const Map& map, Window& window, int max_free) {
+  for (std::size_t i = 0; i < window.free.size() && static_cast<int>(window.free.size()) < max_free; ++i) {
+    const auto& link = map.keyframes().find(window.free[i])->surface_link;
+    if (!link) continue;
+    const auto living = map.reanchor({link->to, Se3{}});
+    if (living && std::find(window.free.begin(), window.free.end(), living->keyframe) == window.free.end()) {
+      window.free.push_back(living->keyframe);
+    }
+  }
+}
+
 ReprojectionObservation measure(const MeasurementModel& model, const Feature& feature, int pose, int landmark) {
   ReprojectionObservation o;
   o.pose = pose;
@@ -77,8 +92,31 @@ void build_landmark_factors(const Map& map, const Window& window, const Measurem
   }
 }
 
+// A little stiffness everywhere keeps the square root real; it is far below what any measurement says.
+Matrix6d square_root(const Matrix6d& information) {
+  const Matrix6d stiffened = information + 1e-6 * Matrix6d::Identity();
+  return stiffened.llt().matrixU();
+}
+
+void build_surface_links(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
+  const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
+  for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i) {
+    const auto& link = map.keyframes().find(problem.keyframe_of_pose[i])->surface_link;
+    if (!link) continue;
+    const auto to = map.reanchor({link->to, link->to_from_camera});
+    const int other = to ? pose_of[to->keyframe.index] : -1;
+    if (other < 0 || other == static_cast<int>(i)) continue;
+    const bool both_fixed = problem.bundle.pose_fixed[i] && problem.bundle.pose_fixed[static_cast<std::size_t>(other)];
+    if (both_fixed) continue;
+    constexpr double huber_sigmas = 3.5;  // 95 % of a chi with six degrees of freedom
+    problem.bundle.factors.push_back(std::make_unique<RelativePose>(
+        VariableRef{VariableKind::pose, other}, VariableRef{VariableKind::pose, static_cast<int>(i)},
+        to->keyframe_from_camera, square_root(link->information), Huber{huber_sigmas}));
+  }
+}
+
 using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
-constexpr std::array<FactorBuilder, 1> factor_builders = {build_landmark_factors};
+constexpr std::array<FactorBuilder, 2> factor_builders = {build_landmark_factors, build_surface_links};
 
 }  // namespace
 
@@ -90,6 +128,7 @@ Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fi
     if (static_cast<int>(window.free.size()) >= max_free) break;
     window.free.push_back(id);
   }
+  add_linked(map, window, max_free);
   gather_landmarks(map, window);
   gather_fixed(map, window, max_fixed);
   if (window.fixed.empty()) {

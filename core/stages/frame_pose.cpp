@@ -48,18 +48,24 @@ PoseObservation pose_observation(const Camera& camera, const ScalePyramid& pyram
   return o;
 }
 
-FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, const FeatureSet& features,
-                           const Se3& initial, FrameMatches& matches) {
+std::vector<PoseObservation> pose_observations(const Camera& camera, const ScalePyramid& pyramid,
+                                               const FeatureSet& features, const FrameMatches& matches) {
   std::vector<PoseObservation> observations;
   observations.reserve(matches.all().size());
   for (const Correspondence& c : matches.all()) {
     observations.push_back(pose_observation(camera, pyramid, features[c.feature], c.point_in_world));
   }
+  return observations;
+}
+
+FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, const FeatureSet& features,
+                           const Se3& initial, FrameMatches& matches) {
+  const std::vector<PoseObservation> observations = pose_observations(camera, pyramid, features, matches);
   const PoseSolution solution = solve_pose(Intrinsics::of(camera), initial, observations);
   std::vector<std::uint8_t> inlier(observations.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(solution.fit[i]);
   matches.keep(inlier);
-  return {solution.world_from_camera, solution.inliers, !solution.degenerate};
+  return {solution.world_from_camera, solution.inliers, !solution.degenerate, solution.degenerate};
 }
 
 }  // namespace vsgraphs

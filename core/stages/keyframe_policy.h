@@ -11,6 +11,8 @@ struct KeyframePolicyOptions {
   double min_translation_m = 0.02;
   double min_rotation_rad = 0.035;
   double max_interval_s = 1.0;
+  double surface_translation_m = 0.12;
+  double surface_rotation_rad = 0.15;
   int few_close_points = 100;
   int many_new_close_points = 70;
 };
@@ -23,6 +25,10 @@ void describe(KeyframePolicyOptions& o, Visitor& field) {
         "no keyframe nearer to the last one than this, unless turned by min_rotation_rad");
   field("min_rotation_rad", o.min_rotation_rad, 0.0, 1.0,
         "no keyframe turned less than this from the last one, unless moved by min_translation_m");
+  field("surface_translation_m", o.surface_translation_m, 0.0, 5.0,
+        "where surfaces hold the pose instead of landmarks: distance between keyframes");
+  field("surface_rotation_rad", o.surface_rotation_rad, 0.0, 3.2,
+        "where surfaces hold the pose instead of landmarks: turn between keyframes");
   field("max_interval_s", o.max_interval_s, 0.1, 60.0, "a moving camera makes a keyframe at least this often");
   field("few_close_points", o.few_close_points, 0, 1000,
         "fewer tracked points with depth than this count as too few, if many new ones are to be had");
@@ -38,6 +44,7 @@ struct KeyframeEvidence {
   double translation_m = 0;       // from the last keyframe requested
   double rotation_rad = 0;
   int backlog = 0;  // keyframes waiting for the mapper
+  bool held_by_surfaces = false;  // landmarks are few, depth was aligned with a keyframe's
 };
 
 bool keyframe_wanted(const KeyframePolicyOptions& options, const KeyframeEvidence& evidence);

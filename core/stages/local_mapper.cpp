@@ -17,6 +17,8 @@ MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snap
   keyframe.frame_index = request.frame_index;
   keyframe.timestamp_s = request.timestamp_s;
   keyframe.features = request.features;
+  keyframe.surface = request.surface;
+  keyframe.surface_link = request.surface_link;
   if (!request.first) {
     const auto pose = draft.map().resolve(request.pose);
     VSG_INVARIANT(pose.has_value());
@@ -57,9 +59,12 @@ void LocalMapper::take_over_observations(const KeyframeRequest& request, Keyfram
 std::vector<KeyframeId> LocalMapper::neighbours_of(const Map& map, KeyframeId keyframe, int count) const {
   constexpr int min_shared = 10;
   std::vector<KeyframeId> result;
+  if (const auto& link = map.keyframes().find(keyframe)->surface_link) {
+    if (map.keyframes().contains(link->to)) result.push_back(link->to);
+  }
   for (const auto& [id, shared] : map.covisible(keyframe, min_shared)) {
     if (static_cast<int>(result.size()) >= count) break;
-    result.push_back(id);
+    if (result.empty() || id != result.front()) result.push_back(id);
   }
   return result;
 }

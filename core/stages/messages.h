@@ -47,6 +47,8 @@ struct KeyframeRequest {
   bool first = false;  // starts the map: `pose` has no anchor, the camera stands at the world's origin
   AnchoredPose pose;
   std::shared_ptr<const FeatureSet> features;
+  std::shared_ptr<const DepthGrid> surface;
+  std::optional<SurfaceLink> surface_link;
   std::vector<LandmarkId> landmarks;  // per feature, as matched by the tracker
   std::vector<Sighting> sightings;
 };

@@ -24,19 +24,23 @@ Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Cam
       camera_(camera),
       pyramid_{orb.levels, orb.scale_factor},
       extractor_(orb, camera),
+      aligner_(camera),
       recovery_(options.recovery, camera, pyramid_, seed) {}
 
 TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, int backlog, TraceSink* trace) {
+  depth_now_ = frame.depth;
   extract(frame, trace);
   if (!last_) return start(snapshot);
   const Map& map = *snapshot;
   const double seconds = now_.timestamp_s - last_->timestamp_s;
   const Se3 world_from_last = *map.resolve(last_->pose);
+  last_world_ = world_from_last;
   const Se3 predicted = motion_.predict(world_from_last, seconds);
   adopt_landmarks_of_own_keyframe(map);
 
   std::optional<FramePose> pose;
   TrackStatus status = TrackStatus::ok;
+  bool guessed = false;  // found without prediction: to be checked against the surfaces
   if (!lost_) {
     const Span span(trace, "match_motion");
     pose = follow_motion(map, predicted);
@@ -45,23 +49,32 @@ TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, in
     const Span span(trace, "recover");
     pose = recovery_.from_recent(map, *now_.features, now_.index, *last_->features, last_->landmarks,
                                  world_from_last, last_->pose.keyframe, matches_);
+    guessed = pose.has_value();
   }
   if (!pose && lost_) {
     const Span span(trace, "relocalise");
     pose = recovery_.from_anywhere(map, *now_.features, now_.index, matches_);
     status = TrackStatus::relocalised;
+    guessed = pose.has_value();
   }
   if (pose) {
     const Span span(trace, "match_local_map");
     pose = refine_on_local_map(map, *pose);
   }
+  if (pose && guessed && !surfaces_agree(map, *pose)) pose.reset();
   if (pose && !believable(world_from_last, pose->world_from_camera, seconds)) pose.reset();
+  if (!lost_ && (!pose || pose->inliers < options_.few_inliers)) {
+    const Span span(trace, "align_surfaces");
+    pose = align_surfaces(map, pose, predicted, seconds);
+  }
   return pose ? finish(snapshot, *pose, status, backlog) : coast_or_lose(map, predicted);
 }
 
 void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
   const Span span(trace, "extract");
-  now_ = FrameState{frame.index, frame.timestamp_s, nullptr, {}, {}};
+  now_ = FrameState{};
+  now_.index = frame.index;
+  now_.timestamp_s = frame.timestamp_s;
   ImageView<std::uint8_t> grey = frame.grey;
   if (grey.empty()) {
     to_grey(frame.colour, grey_);
@@ -165,13 +178,7 @@ void Tracker::match_points_of_last_frame(const Map& map, const Se3& predicted, d
 
 std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const FramePose& guess) {
   local_map_.select(map, matched_landmarks(), last_->pose.keyframe, options_.local_keyframes);
-  project_local_map(map, guess.world_from_camera);
-  MatchOptions options;
-  options.ratio = 0.8;
-  const std::vector<int> found = match_projected(projections_, *now_.features, options, matches_.taken());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i] >= 0) matches_.add({found[i], views_[i].id, views_[i].point_in_world});
-  }
+  match_local_map(map, guess.world_from_camera);
   const auto landmarks = matched_landmarks().size();
   // The map is the better reference; the last frame's own readings only carry where the map is thin.
   if (static_cast<int>(landmarks) >= 2 * options_.min_inliers) matches_.keep_landmarks_only();
@@ -179,6 +186,16 @@ std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const Fram
   const FramePose pose = solve_frame_pose(camera_, pyramid_, *now_.features, guess.world_from_camera, matches_);
   if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < before) return std::nullopt;
   return pose;
+}
+
+void Tracker::match_local_map(const Map& map, const Se3& world_from_camera) {
+  project_local_map(map, world_from_camera);
+  MatchOptions options;
+  options.ratio = 0.8;
+  const std::vector<int> found = match_projected(projections_, *now_.features, options, matches_.taken());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] >= 0) matches_.add({found[i], views_[i].id, views_[i].point_in_world});
+  }
 }
 
 // Projects the local map's landmarks that are not matched yet; counts all that should be visible as such.
@@ -220,8 +237,9 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
     sighting.landmark = c.landmark;
     ++sighting.found;
   }
-  const KeyframeId reference =
-      local_map_.reference().valid() ? local_map_.reference() : map.reanchor(last_->pose)->keyframe;
+  const KeyframeId reference = now_.surface_link        ? now_.surface_link->to
+                               : local_map_.reference().valid() ? local_map_.reference()
+                                                                : map.reanchor(last_->pose)->keyframe;
   const Se3& world_from_reference = map.keyframes().find(reference)->world_from_camera;
   now_.pose = {reference, world_from_reference.inverse() * pose.world_from_camera};
 
@@ -230,6 +248,7 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
   } else {
     motion_.update(*map.resolve(last_->pose), pose.world_from_camera, now_.timestamp_s - last_->timestamp_s);
   }
+  if (pose.degenerate) status = TrackStatus::coasting;
   lost_ = false;
   last_measured_s_ = now_.timestamp_s;
   TrackedFrame result = report(status, pose.world_from_camera);
@@ -271,6 +290,7 @@ KeyframeEvidence Tracker::gather_evidence(const Map& map, const Se3& world_from_
     e.translation_m = step.translation().norm();
     e.rotation_rad = rotation_angle(step.rotation());
   }
+  e.held_by_surfaces = now_.surface_link.has_value();
   const Keyframe* reference = map.keyframes().find(now_.pose.keyframe);
   const std::size_t established = map.keyframes().size() > 2 ? 3 : 1;
   for (const LandmarkId id : reference->landmarks) {
@@ -294,6 +314,9 @@ std::shared_ptr<const KeyframeRequest> Tracker::make_request(const AnchoredPose&
   request->first = first;
   request->pose = pose;
   request->features = now_.features;
+  surface_now();
+  request->surface = now_.surface;
+  request->surface_link = now_.surface_link;
   request->landmarks = now_.landmarks;
   for (const auto& [id, sighting] : sightings_) request->sightings.push_back(sighting);
   sightings_.clear();

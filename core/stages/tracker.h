@@ -12,6 +12,7 @@
 
 #include "core/base/options.h"
 #include "core/base/trace.h"
+#include "core/stages/depth_alignment.h"
 #include "core/stages/frame_pose.h"
 #include "core/stages/keyframe_policy.h"
 #include "core/stages/local_map.h"
@@ -27,6 +28,7 @@ struct TrackerOptions {
   double local_search_radius_px = 5;
   int local_keyframes = 20;
   int min_inliers = 20;
+  int few_inliers = 80;
   int min_features_to_start = 100;
   double max_speed_m_per_s = 3.0;
   double max_turn_rad_per_s = 5.0;
@@ -41,6 +43,8 @@ void describe(TrackerOptions& o, Visitor& field) {
   field("local_search_radius_px", o.local_search_radius_px, 1.0, 50.0, "search around projected landmarks");
   field("local_keyframes", o.local_keyframes, 2, 200, "keyframes whose landmarks a frame is matched against");
   field("min_inliers", o.min_inliers, 6, 200, "fewer inlier matches than this are no pose");
+  field("few_inliers", o.few_inliers, 0, 1000,
+        "with fewer inlier matches than this, depth is aligned with a keyframe's as well");
   field("min_features_to_start", o.min_features_to_start, 20, 5000, "features with depth needed to start a map");
   field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0, "a pose that would need more speed is rejected");
   field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0, "a pose that would need a faster turn is rejected");
@@ -62,6 +66,8 @@ class Tracker {
     double timestamp_s = 0;
     std::shared_ptr<const FeatureSet> features;
     std::vector<LandmarkId> landmarks;  // per feature
+    std::shared_ptr<const DepthGrid> surface;  // made when first asked for
+    std::optional<SurfaceLink> surface_link;   // where surfaces held the pose
     AnchoredPose pose;
   };
 
@@ -72,6 +78,17 @@ class Tracker {
   void match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks);
   std::optional<FramePose> refine_on_local_map(const Map& map, const FramePose& guess);
   void project_local_map(const Map& map, const Se3& world_from_camera);
+  // What landmarks are too few to tell, surfaces may. Returns the better pose, or `pose` where they do not.
+  std::optional<FramePose> align_surfaces(const Map& map, const std::optional<FramePose>& pose, const Se3& predicted,
+                                          double seconds);
+  std::optional<FramePose> hold_by_surfaces(const SurfaceReference& reference, const Se3& guess,
+                                            const PosePriorTerm& prior, double seconds);
+  SurfaceReference choose_surface(const Map& map, const Se3& world_from_camera);
+  void match_local_map(const Map& map, const Se3& world_from_camera);
+  PosePriorTerm motion_prior(const Se3& predicted, double seconds) const;
+  // Do the frame's surfaces lie where the keyframes around that pose saw them?
+  bool surfaces_agree(const Map& map, const FramePose& pose);
+  const DepthGrid& surface_now();
   bool believable(const Se3& world_from_last, const Se3& world_from_now, double seconds) const;
   void adopt_landmarks_of_own_keyframe(const Map& map);
   TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);
@@ -85,6 +102,7 @@ class Tracker {
   Camera camera_;
   ScalePyramid pyramid_;
   OrbExtractor extractor_;
+  DepthAligner aligner_;
   Recovery recovery_;
   Image<std::uint8_t> grey_;
 
@@ -96,7 +114,9 @@ class Tracker {
   std::map<LandmarkId, Sighting> sightings_;
 
   std::optional<FrameState> last_;  // the last frame that had a pose
+  std::optional<Se3> last_world_;   // its pose in the present snapshot's world
   FrameState now_;
+  DepthView depth_now_;  // the caller's, valid during track()
   double last_measured_s_ = 0;  // when a pose was last measured, not coasted
   bool lost_ = false;
   std::optional<AnchoredPose> last_keyframe_pose_;

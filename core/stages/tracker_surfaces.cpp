@@ -1,0 +1,90 @@
+// The part of the tracker that works with surfaces: see depth_alignment.h.
+#include "core/stages/tracker.h"
+
+namespace vsgraphs {
+
+const DepthGrid& Tracker::surface_now() {
+  if (!now_.surface) now_.surface = std::make_shared<const DepthGrid>(aligner_.sampler().sample(depth_now_));
+  return *now_.surface;
+}
+
+// What constant velocity is worth: it fails by accelerations, which grow with the time between frames.
+PosePriorTerm Tracker::motion_prior(const Se3& predicted, double seconds) const {
+  const double sigma_m = 0.02 + 0.3 * seconds, sigma_rad = 0.02 + 0.3 * seconds;
+  PosePriorTerm prior;
+  prior.world_from_camera = predicted;
+  prior.information.diagonal().head<3>().setConstant(1.0 / (sigma_m * sigma_m));
+  prior.information.diagonal().tail<3>().setConstant(1.0 / (sigma_rad * sigma_rad));
+  return prior;
+}
+
+// The keyframe whose surfaces the frame sees most of, among those nearby: the last frame's, the local map's and
+// the newest ones (ties: the first of these).
+SurfaceReference Tracker::choose_surface(const Map& map, const Se3& world_from_camera) {
+  constexpr std::uint32_t newest = 4;
+  std::vector<KeyframeId> candidates{map.reanchor(last_->pose)->keyframe, local_map_.reference()};
+  const std::uint32_t bound = map.keyframes().index_bound();
+  for (std::uint32_t back = 1; back <= std::min(bound, newest); ++back) {
+    candidates.push_back(map.keyframes().at_index(bound - back));
+  }
+  SurfaceReference best;
+  int most = 0;
+  for (const KeyframeId id : candidates) {
+    const Keyframe* keyframe = map.keyframes().find(id);
+    if (!keyframe || !keyframe->surface || id == best.id) continue;
+    const SurfaceReference candidate{id, keyframe->world_from_camera, keyframe->surface.get()};
+    const int agreeing = aligner_.judge(surface_now(), candidate, world_from_camera).associated;
+    if (agreeing <= most) continue;
+    most = agreeing;
+    best = candidate;
+  }
+  return best;
+}
+
+std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::optional<FramePose>& pose,
+                                                 const Se3& predicted, double seconds) {
+  const Se3 guess = pose ? pose->world_from_camera : predicted;
+  const SurfaceReference reference = choose_surface(map, guess);
+  if (!reference.grid) return pose;
+  const PosePriorTerm prior = motion_prior(predicted, seconds);
+  if (!pose) {
+    // Surfaces alone bring the camera near; then the landmarks around can be looked for.
+    const DepthAlignment first = aligner_.align(surface_now(), reference, guess, {}, prior);
+    if (!first.convincing()) return std::nullopt;
+    matches_.reset(now_.features->size());
+    local_map_.select(map, {}, reference.id, options_.local_keyframes);
+    match_local_map(map, first.solution.world_from_camera);
+    return hold_by_surfaces(reference, first.solution.world_from_camera, prior, seconds);
+  }
+  const auto held = hold_by_surfaces(reference, guess, prior, seconds);
+  return held ? held : pose;
+}
+
+std::optional<FramePose> Tracker::hold_by_surfaces(const SurfaceReference& reference, const Se3& guess,
+                                                   const PosePriorTerm& prior, double seconds) {
+  const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
+  const DepthAlignment aligned = aligner_.align(surface_now(), reference, guess, observations, prior);
+  const Se3& pose = aligned.solution.world_from_camera;
+  if (!aligned.convincing() || !believable(*last_world_, pose, seconds)) return std::nullopt;
+  std::vector<std::uint8_t> inlier(observations.size());
+  for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned.solution.fit[i]);
+  matches_.keep(inlier);
+  // What only the prediction held is passed on as weakly as it was known.
+  now_.surface_link = SurfaceLink{reference.id, reference.world_from_keyframe.inverse() * pose,
+                                  aligned.surface_information + prior.information};
+  return FramePose{pose, matches_.size(), true, aligned.solution.degenerate};
+}
+
+bool Tracker::surfaces_agree(const Map& map, const FramePose& pose) {
+  constexpr int enough_samples = 150;
+  const Keyframe* keyframe = map.keyframes().find(local_map_.reference());
+  if (!keyframe || !keyframe->surface) return true;
+  const DepthAlignment judged = aligner_.judge(
+      surface_now(), {local_map_.reference(), keyframe->world_from_camera, keyframe->surface.get()},
+      pose.world_from_camera);
+  if (judged.associated >= enough_samples) return judged.convincing();
+  // Too little common surface to tell: then the matches must tell by their number.
+  return pose.inliers >= 2 * options_.recovery.min_relocalisation_inliers;
+}
+
+}  // namespace vsgraphs
