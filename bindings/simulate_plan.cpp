@@ -132,7 +132,7 @@ void bind_things(nb::module_& m) {
 
 void bind_path(nb::module_& m) {
   auto waypoint = nb::class_<WaypointPlan>(m, "WaypointPlan").def(nb::init<>());
-  waypoint.def_rw("room", &WaypointPlan::room, nb::arg("value").none())
+  waypoint.def_rw("room", &WaypointPlan::room)
       .def_rw("z", &WaypointPlan::z, nb::arg("value").none())
       .def_rw("yaw_deg", &WaypointPlan::yaw_deg, nb::arg("value").none())
       .def_rw("pitch_deg", &WaypointPlan::pitch_deg, nb::arg("value").none())

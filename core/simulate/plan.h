@@ -92,7 +92,7 @@ struct StairsPlan {
 
 struct WaypointPlan {
   Eigen::Vector2d at{0, 0};
-  std::optional<std::string> room;      // only needed where rooms lie above one another
+  std::string room;                     // only needed where rooms lie above one another
   std::optional<double> z;              // camera height in the world; absent: floor + eye_height
   std::optional<Eigen::Vector2d> look;  // a point to look at, or ...
   std::optional<double> yaw_deg;        // ... a heading; neither: along the way

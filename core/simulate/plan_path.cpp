@@ -29,7 +29,7 @@ int room_of(const Scene& scene, std::size_t i, int previous) {
   std::vector<int> found;
   for (std::size_t r = 0; r < scene.plan.rooms.size(); ++r) {
     const RoomPlan& room = scene.plan.rooms[r];
-    if (w.room && room.id != *w.room) continue;
+    if (!w.room.empty() && room.id != w.room) continue;
     if (contains(room.polygon, w.at)) found.push_back(static_cast<int>(r));
   }
   if (found.size() > 1 && std::find(found.begin(), found.end(), previous) != found.end()) return previous;
@@ -60,7 +60,7 @@ std::vector<ViewPoint> view_points(const Scene& scene) {
       const auto doorway = doorway_ground(scene, w.at);
       require_input(doorway.has_value() || w.z,
                     waypoint(i) + ".at: lies in no room and no doorway" +
-                        (w.room ? " (room \"" + *w.room + "\" is asked for)" : std::string()));
+                        (w.room.empty() ? std::string() : " (room \"" + w.room + "\" is asked for)"));
       ground = doorway.value_or(0);
     }
     point.position = {w.at.x(), w.at.y(), w.z.value_or(ground + path.eye_height)};
