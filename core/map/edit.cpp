@@ -40,10 +40,10 @@ class Fnv1a {
     word(static_cast<std::uint64_t>(op.keyframe.frame_index));
     number(op.keyframe.timestamp_s);
     pose(op.keyframe.world_from_camera);
-    if (op.keyframe.surface_link) {
-      id(op.keyframe.surface_link->to);
-      pose(op.keyframe.surface_link->to_from_camera);
-      matrix(op.keyframe.surface_link->information);
+    if (op.keyframe.tracked_link) {
+      id(op.keyframe.tracked_link->to);
+      pose(op.keyframe.tracked_link->to_from_camera);
+      matrix(op.keyframe.tracked_link->information);
     }
     for (const Descriptor& d : op.keyframe.features->descriptors()) {
       for (const std::uint64_t w : d.words) word(w);

@@ -12,9 +12,9 @@
 
 namespace vsgraphs {
 
-// Where one keyframe stands as seen from another, measured by aligning their surfaces. Made where landmarks are too
-// few to hold the keyframe by themselves.
-struct SurfaceLink {
+// Where a keyframe stands as seen from another, as tracking measured it: by surfaces, or by points that never became
+// landmarks. Made where landmarks are too few to hold the keyframe by themselves.
+struct TrackedLink {
   KeyframeId to;
   Se3 to_from_camera;
   Matrix6d information = Matrix6d::Zero();  // tangent on the right of to_from_camera
@@ -26,7 +26,7 @@ struct Keyframe {
   Se3 world_from_camera;
   std::shared_ptr<const FeatureSet> features;  // never changes; shared with every snapshot
   std::shared_ptr<const DepthGrid> surface;    // likewise
-  std::optional<SurfaceLink> surface_link;
+  std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
 };
 

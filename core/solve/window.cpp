@@ -48,10 +48,10 @@ void gather_fixed(const Map& map, Window& window, int max_fixed) {
   window.fixed = std::move(witnesses);
 }
 
-// Keyframes that surface links chain to the window's, as those may share no landmark with it.
+// Keyframes that tracked links chain to the window's, as those may share no landmark with it.
 void add_linked(const Map& map, Window& window, int max_free) {
   for (std::size_t i = 0; i < window.free.size() && static_cast<int>(window.free.size()) < max_free; ++i) {
-    const auto& link = map.keyframes().find(window.free[i])->surface_link;
+    const auto& link = map.keyframes().find(window.free[i])->tracked_link;
     if (!link) continue;
     const auto living = map.reanchor({link->to, Se3{}});
     if (living && std::find(window.free.begin(), window.free.end(), living->keyframe) == window.free.end()) {
@@ -98,10 +98,10 @@ Matrix6d square_root(const Matrix6d& information) {
   return stiffened.llt().matrixU();
 }
 
-void build_surface_links(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
+void build_tracked_links(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
   const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
   for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i) {
-    const auto& link = map.keyframes().find(problem.keyframe_of_pose[i])->surface_link;
+    const auto& link = map.keyframes().find(problem.keyframe_of_pose[i])->tracked_link;
     if (!link) continue;
     const auto to = map.reanchor({link->to, link->to_from_camera});
     const int other = to ? pose_of[to->keyframe.index] : -1;
@@ -116,7 +116,7 @@ void build_surface_links(const Map& map, const Window&, const MeasurementModel&,
 }
 
 using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
-constexpr std::array<FactorBuilder, 2> factor_builders = {build_landmark_factors, build_surface_links};
+constexpr std::array<FactorBuilder, 2> factor_builders = {build_landmark_factors, build_tracked_links};
 
 }  // namespace
 

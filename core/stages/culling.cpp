@@ -62,7 +62,7 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
   for (const KeyframeId id : candidates) {
     const Map& map = draft.map();
     const Keyframe* keyframe = map.keyframes().find(id);
-    if (!keyframe || id.index == 0 || keyframe->surface_link || !redundant(options, map, id)) continue;
+    if (!keyframe || id.index == 0 || keyframe->tracked_link || !redundant(options, map, id)) continue;
     const auto neighbours = map.covisible(id, 1);
     if (!neighbours.empty()) draft.record(RemoveKeyframe{id, neighbours.front().first});
   }

@@ -19,10 +19,12 @@ bool DepthAlignment::convincing() const {
   return associated >= min_samples && agreeing >= agreeing_share * associated;
 }
 
+bool DepthAlignment::contradicts() const { return associated >= min_samples && !convincing(); }
+
 std::vector<PointToPlane> DepthAligner::associate(const DepthGrid& now, const SurfaceReference& reference,
                                                   const Se3& pose, double gate_m) const {
   constexpr float min_normal_agreement = 0.85F;
-  const Se3 reference_from_now = reference.world_from_keyframe.inverse() * pose;
+  const Se3 reference_from_now = reference.world_from_surface.inverse() * pose;
   const Eigen::Matrix3f turn = reference_from_now.rotation().cast<float>();
   std::vector<PointToPlane> rows;
   for (int r = 0; r < now.rows; r += 2) {
@@ -37,8 +39,8 @@ std::vector<PointToPlane> DepthAligner::associate(const DepthGrid& now, const Su
       if (surface->normal.dot(turn * sample.normal) < min_normal_agreement) continue;
       PointToPlane row;
       row.point_in_camera = sample.point.cast<double>();
-      row.normal_in_world = reference.world_from_keyframe.rotation() * normal;
-      row.offset_m = -row.normal_in_world.dot(reference.world_from_keyframe * surface->point.cast<double>());
+      row.normal_in_world = reference.world_from_surface.rotation() * normal;
+      row.offset_m = -row.normal_in_world.dot(reference.world_from_surface * surface->point.cast<double>());
       const double sigma = std::hypot(camera_.depth_noise.sigma_m(row.point_in_camera.z()),
                                       camera_.depth_noise.sigma_m(static_cast<double>(surface->point.z())));
       row.inv_sigma = 1.0 / sigma;

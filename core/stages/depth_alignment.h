@@ -15,9 +15,10 @@
 
 namespace vsgraphs {
 
+// Surfaces to lay a frame against: a keyframe's, or an earlier frame's that hangs on that keyframe.
 struct SurfaceReference {
   KeyframeId id;
-  Se3 world_from_keyframe;
+  Se3 world_from_surface;
   const DepthGrid* grid = nullptr;
 };
 
@@ -26,7 +27,8 @@ struct DepthAlignment {
   int associated = 0;  // samples that met a surface of the reference
   int agreeing = 0;    // of them, on it within noise
   Matrix6d surface_information = Matrix6d::Zero();  // of the agreeing samples alone, right-hand tangent of the pose
-  bool convincing() const;  // enough samples, most of which agree
+  bool convincing() const;   // enough samples, most of which agree
+  bool contradicts() const;  // enough samples, too many of which disagree
 };
 
 class DepthAligner {

@@ -44,6 +44,7 @@ struct FramePose {
   Se3 world_from_camera;
   int inliers = 0;
   bool trustworthy = false;  // solved, and the six directions are all held by measurements
+  Matrix6d information = Matrix6d::Zero();  // of the measurements, tangent on the right of the pose
   bool degenerate = false;   // part of the pose is only what the motion model predicted
 };
 

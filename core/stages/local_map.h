@@ -33,6 +33,8 @@ class LocalMap {
 
   // The keyframe with most votes; invalid if there was nothing to vote.
   KeyframeId reference() const { return reference_; }
+  // How many of the landmarks seen it observes.
+  int reference_votes() const { return reference_.valid() ? votes_[reference_.index] : 0; }
   const std::vector<KeyframeId>& keyframes() const { return keyframes_; }
   const std::vector<LandmarkId>& landmarks() const { return landmarks_; }
 

@@ -18,7 +18,7 @@ MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snap
   keyframe.timestamp_s = request.timestamp_s;
   keyframe.features = request.features;
   keyframe.surface = request.surface;
-  keyframe.surface_link = request.surface_link;
+  keyframe.tracked_link = request.tracked_link;
   if (!request.first) {
     const auto pose = draft.map().resolve(request.pose);
     VSG_INVARIANT(pose.has_value());
@@ -59,7 +59,7 @@ void LocalMapper::take_over_observations(const KeyframeRequest& request, Keyfram
 std::vector<KeyframeId> LocalMapper::neighbours_of(const Map& map, KeyframeId keyframe, int count) const {
   constexpr int min_shared = 10;
   std::vector<KeyframeId> result;
-  if (const auto& link = map.keyframes().find(keyframe)->surface_link) {
+  if (const auto& link = map.keyframes().find(keyframe)->tracked_link) {
     if (map.keyframes().contains(link->to)) result.push_back(link->to);
   }
   for (const auto& [id, shared] : map.covisible(keyframe, min_shared)) {

@@ -48,7 +48,7 @@ struct KeyframeRequest {
   AnchoredPose pose;
   std::shared_ptr<const FeatureSet> features;
   std::shared_ptr<const DepthGrid> surface;
-  std::optional<SurfaceLink> surface_link;
+  std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature, as matched by the tracker
   std::vector<Sighting> sightings;
 };

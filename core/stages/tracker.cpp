@@ -28,7 +28,6 @@ Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Cam
       recovery_(options.recovery, camera, pyramid_, seed) {}
 
 TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, int backlog, TraceSink* trace) {
-  depth_now_ = frame.depth;
   extract(frame, trace);
   if (!last_) return start(snapshot);
   const Map& map = *snapshot;
@@ -39,22 +38,12 @@ TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, in
   adopt_landmarks_of_own_keyframe(map);
 
   std::optional<FramePose> pose;
-  TrackStatus status = TrackStatus::ok;
+  TrackStatus status = lost_ ? TrackStatus::relocalised : TrackStatus::ok;
   bool guessed = false;  // found without prediction: to be checked against the surfaces
-  if (!lost_) {
-    const Span span(trace, "match_motion");
-    pose = follow_motion(map, predicted);
-  }
-  if (!pose && !lost_) {
-    const Span span(trace, "recover");
-    pose = recovery_.from_recent(map, *now_.features, now_.index, *last_->features, last_->landmarks,
-                                 world_from_last, last_->pose.keyframe, matches_);
-    guessed = pose.has_value();
-  }
+  pose = match_recent(map, predicted, guessed, trace);
   if (!pose && lost_) {
     const Span span(trace, "relocalise");
     pose = recovery_.from_anywhere(map, *now_.features, now_.index, matches_);
-    status = TrackStatus::relocalised;
     guessed = pose.has_value();
   }
   if (pose) {
@@ -81,6 +70,7 @@ void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
     grey = grey_.view();
   }
   now_.features = std::make_shared<const FeatureSet>(extractor_.extract(grey, frame.depth, frame.colour));
+  now_.surface = std::make_shared<const DepthGrid>(aligner_.sampler().sample(frame.depth));
   now_.landmarks.assign(static_cast<std::size_t>(now_.features->size()), LandmarkId{});
 }
 
@@ -113,25 +103,49 @@ void Tracker::adopt_landmarks_of_own_keyframe(const Map& map) {
   }
 }
 
-std::optional<FramePose> Tracker::follow_motion(const Map& map, const Se3& predicted) {
-  for (const double widening : {1.0, 2.5}) {
-    auto pose = match_last_frame(map, predicted, widening * options_.search_radius_px);
-    if (pose) return pose;
+// A search that is too narrow for the step finds coincidences, so a poor result is not the end: wider searches and
+// matching without prediction are tried, and the pose that explains most matches wins.
+std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predicted, bool& guessed, TraceSink* trace) {
+  constexpr int plenty = 50;
+  std::optional<FramePose> best;
+  FrameMatches best_matches;
+  const auto keep_if_better = [&](const std::optional<FramePose>& pose, bool guess) {
+    if (!pose || (best && best->inliers >= pose->inliers)) return;
+    best = pose;
+    best_matches = matches_;
+    guessed = guess;
+  };
+  if (!lost_) {
+    const Span span(trace, "match_motion");
+    for (const double widening : {1.0, 2.5}) {
+      const double share = match_last_frame(map, predicted, widening * options_.search_radius_px, keep_if_better);
+      if (best && best->inliers >= plenty && share >= 0.6) break;
+    }
   }
-  return std::nullopt;
+  if (!best || best->inliers < plenty) {
+    const Span span(trace, "recover");
+    keep_if_better(recovery_.from_recent(map, *now_.features, now_.index, *last_->features, last_->landmarks,
+                                         *last_world_, last_->pose.keyframe, matches_),
+                   true);
+  }
+  matches_ = std::move(best_matches);
+  return best;
 }
 
-std::optional<FramePose> Tracker::match_last_frame(const Map& map, const Se3& predicted, double radius_px) {
+// Returns the share of the matches that the pose found explains.
+double Tracker::match_last_frame(const Map& map, const Se3& predicted, double radius_px,
+                                 const std::function<void(const std::optional<FramePose>&, bool)>& found_pose) {
   constexpr int enough_landmarks = 150;
   matches_.reset(now_.features->size());
   match_points_of_last_frame(map, predicted, radius_px, true);
   if (matches_.size() < enough_landmarks) match_points_of_last_frame(map, predicted, radius_px, false);
-  if (matches_.size() < options_.min_inliers) return std::nullopt;
+  if (matches_.size() < options_.min_inliers) return 0;
   const int found = matches_.size();
   const FramePose pose = solve_frame_pose(camera_, pyramid_, *now_.features, predicted, matches_);
   // A pose that most matches contradict is a coincidence.
-  if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < found) return std::nullopt;
-  return pose;
+  if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < found) return 0;
+  found_pose(pose, false);
+  return static_cast<double>(pose.inliers) / found;
 }
 
 // Projects either the last frame's landmarks or its bare depth readings, and matches them.
@@ -237,20 +251,26 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
     sighting.landmark = c.landmark;
     ++sighting.found;
   }
-  const KeyframeId reference = now_.surface_link        ? now_.surface_link->to
-                               : local_map_.reference().valid() ? local_map_.reference()
-                                                                : map.reanchor(last_->pose)->keyframe;
-  const Se3& world_from_reference = map.keyframes().find(reference)->world_from_camera;
-  now_.pose = {reference, world_from_reference.inverse() * pose.world_from_camera};
+  const KeyframeId anchor = choose_anchor(map);
+  const Se3& world_from_anchor = map.keyframes().find(anchor)->world_from_camera;
+  now_.pose = {anchor, world_from_anchor.inverse() * pose.world_from_camera};
+  const double seconds = now_.timestamp_s - last_->timestamp_s;
+  const auto landmarks = std::count_if(now_.landmarks.begin(), now_.landmarks.end(), [](LandmarkId id) { return id.valid(); });
+  if (landmarks < options_.few_inliers) {
+    // What only the prediction held is passed on as weakly as it was known.
+    now_.tracked_link = TrackedLink{anchor, now_.pose.keyframe_from_camera,
+                                    pose.information + motion_prior(pose.world_from_camera, seconds).information};
+  }
 
   if (status == TrackStatus::relocalised) {
     motion_.forget();
   } else {
-    motion_.update(*map.resolve(last_->pose), pose.world_from_camera, now_.timestamp_s - last_->timestamp_s);
+    motion_.update(*map.resolve(last_->pose), pose.world_from_camera, seconds);
   }
   if (pose.degenerate) status = TrackStatus::coasting;
   lost_ = false;
   last_measured_s_ = now_.timestamp_s;
+  unmeasured_frames_ = 0;
   TrackedFrame result = report(status, pose.world_from_camera);
   result.matches = pose.inliers;
   if (keyframe_wanted(options_.keyframe, gather_evidence(map, pose.world_from_camera, backlog))) {
@@ -260,8 +280,19 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
   return result;
 }
 
+// The keyframe the frame hangs on: the one that held its pose. A handful of votes is no hold, and may come from a
+// place that only looks alike.
+KeyframeId Tracker::choose_anchor(const Map& map) const {
+  constexpr int enough_votes = 15;
+  if (now_.surface_reference.valid()) return now_.surface_reference;
+  if (local_map_.reference_votes() >= enough_votes) return local_map_.reference();
+  return map.reanchor(last_->pose)->keyframe;
+}
+
 TrackedFrame Tracker::coast_or_lose(const Map& map, const Se3& predicted) {
-  if (lost_ || now_.timestamp_s - last_measured_s_ > options_.coast_s) {
+  ++unmeasured_frames_;
+  const bool long_ago = now_.timestamp_s - last_measured_s_ > options_.coast_s;
+  if (lost_ || (long_ago && unmeasured_frames_ > options_.coast_frames)) {
     lost_ = true;
     motion_.forget();
     return report(TrackStatus::lost, Se3{});
@@ -290,7 +321,7 @@ KeyframeEvidence Tracker::gather_evidence(const Map& map, const Se3& world_from_
     e.translation_m = step.translation().norm();
     e.rotation_rad = rotation_angle(step.rotation());
   }
-  e.held_by_surfaces = now_.surface_link.has_value();
+  e.held_by_surfaces = now_.surface_reference.valid();
   const Keyframe* reference = map.keyframes().find(now_.pose.keyframe);
   const std::size_t established = map.keyframes().size() > 2 ? 3 : 1;
   for (const LandmarkId id : reference->landmarks) {
@@ -314,9 +345,8 @@ std::shared_ptr<const KeyframeRequest> Tracker::make_request(const AnchoredPose&
   request->first = first;
   request->pose = pose;
   request->features = now_.features;
-  surface_now();
   request->surface = now_.surface;
-  request->surface_link = now_.surface_link;
+  request->tracked_link = now_.tracked_link;
   request->landmarks = now_.landmarks;
   for (const auto& [id, sighting] : sightings_) request->sightings.push_back(sighting);
   sightings_.clear();

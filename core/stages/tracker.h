@@ -7,6 +7,7 @@
 // Scheme after ORB-SLAM2 (Mur-Artal, Tardos, T-RO 2017); residuals, gates and recovery are our own (docs).
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -33,6 +34,7 @@ struct TrackerOptions {
   double max_speed_m_per_s = 3.0;
   double max_turn_rad_per_s = 5.0;
   double coast_s = 0.4;
+  int coast_frames = 3;
   KeyframePolicyOptions keyframe;
   RecoveryOptions recovery;
 };
@@ -49,6 +51,7 @@ void describe(TrackerOptions& o, Visitor& field) {
   field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0, "a pose that would need more speed is rejected");
   field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0, "a pose that would need a faster turn is rejected");
   field("coast_s", o.coast_s, 0.0, 5.0, "how long the motion model is believed when nothing is measured");
+  field("coast_frames", o.coast_frames, 0, 100, "frames for which it is believed at least, however slow they come");
 }
 
 class Tracker {
@@ -66,15 +69,17 @@ class Tracker {
     double timestamp_s = 0;
     std::shared_ptr<const FeatureSet> features;
     std::vector<LandmarkId> landmarks;  // per feature
-    std::shared_ptr<const DepthGrid> surface;  // made when first asked for
-    std::optional<SurfaceLink> surface_link;   // where surfaces held the pose
+    std::shared_ptr<const DepthGrid> surface;
+    KeyframeId surface_reference;              // whose surfaces held the pose; invalid where they were not needed
+    std::optional<TrackedLink> tracked_link;   // where landmarks are too few
     AnchoredPose pose;
   };
 
   void extract(const RgbdFrame& frame, TraceSink* trace);
   TrackedFrame start(const Snapshot& snapshot);
-  std::optional<FramePose> follow_motion(const Map& map, const Se3& predicted);
-  std::optional<FramePose> match_last_frame(const Map& map, const Se3& predicted, double radius_px);
+  std::optional<FramePose> match_recent(const Map& map, const Se3& predicted, bool& guessed, TraceSink* trace);
+  double match_last_frame(const Map& map, const Se3& predicted, double radius_px,
+                          const std::function<void(const std::optional<FramePose>&, bool)>& found_pose);
   void match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks);
   std::optional<FramePose> refine_on_local_map(const Map& map, const FramePose& guess);
   void project_local_map(const Map& map, const Se3& world_from_camera);
@@ -88,9 +93,10 @@ class Tracker {
   PosePriorTerm motion_prior(const Se3& predicted, double seconds) const;
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
-  const DepthGrid& surface_now();
+  const DepthGrid& surface_now() const { return *now_.surface; }
   bool believable(const Se3& world_from_last, const Se3& world_from_now, double seconds) const;
   void adopt_landmarks_of_own_keyframe(const Map& map);
+  KeyframeId choose_anchor(const Map& map) const;
   TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);
   TrackedFrame coast_or_lose(const Map& map, const Se3& predicted);
   std::vector<LandmarkId> matched_landmarks() const;
@@ -116,8 +122,8 @@ class Tracker {
   std::optional<FrameState> last_;  // the last frame that had a pose
   std::optional<Se3> last_world_;   // its pose in the present snapshot's world
   FrameState now_;
-  DepthView depth_now_;  // the caller's, valid during track()
   double last_measured_s_ = 0;  // when a pose was last measured, not coasted
+  int unmeasured_frames_ = 0;
   bool lost_ = false;
   std::optional<AnchoredPose> last_keyframe_pose_;
   double last_keyframe_s_ = 0;

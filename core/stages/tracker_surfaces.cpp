@@ -3,11 +3,6 @@
 
 namespace vsgraphs {
 
-const DepthGrid& Tracker::surface_now() {
-  if (!now_.surface) now_.surface = std::make_shared<const DepthGrid>(aligner_.sampler().sample(depth_now_));
-  return *now_.surface;
-}
-
 // What constant velocity is worth: it fails by accelerations, which grow with the time between frames.
 PosePriorTerm Tracker::motion_prior(const Se3& predicted, double seconds) const {
   const double sigma_m = 0.02 + 0.3 * seconds, sigma_rad = 0.02 + 0.3 * seconds;
@@ -18,24 +13,27 @@ PosePriorTerm Tracker::motion_prior(const Se3& predicted, double seconds) const 
   return prior;
 }
 
-// The keyframe whose surfaces the frame sees most of, among those nearby: the last frame's, the local map's and
-// the newest ones (ties: the first of these).
+// Whose surfaces the frame sees most of: the last frame's, its keyframe's, the local map's or the newest keyframes'
+// (ties: the first of these, but for the last frame, which gives way to a keyframe that shows nearly as much: errors
+// against the same reference do not add up).
 SurfaceReference Tracker::choose_surface(const Map& map, const Se3& world_from_camera) {
   constexpr std::uint32_t newest = 4;
-  std::vector<KeyframeId> candidates{map.reanchor(last_->pose)->keyframe, local_map_.reference()};
+  constexpr double last_frame_handicap = 0.7;
+  const AnchoredPose last = *map.reanchor(last_->pose);
+  SurfaceReference best{last.keyframe, *last_world_, last_->surface.get()};
+  double most = last_frame_handicap * aligner_.judge(surface_now(), best, world_from_camera).associated;
+  std::vector<KeyframeId> candidates{last.keyframe, local_map_.reference()};
   const std::uint32_t bound = map.keyframes().index_bound();
   for (std::uint32_t back = 1; back <= std::min(bound, newest); ++back) {
     candidates.push_back(map.keyframes().at_index(bound - back));
   }
-  SurfaceReference best;
-  int most = 0;
   for (const KeyframeId id : candidates) {
     const Keyframe* keyframe = map.keyframes().find(id);
-    if (!keyframe || !keyframe->surface || id == best.id) continue;
+    if (!keyframe || !keyframe->surface) continue;
     const SurfaceReference candidate{id, keyframe->world_from_camera, keyframe->surface.get()};
-    const int agreeing = aligner_.judge(surface_now(), candidate, world_from_camera).associated;
-    if (agreeing <= most) continue;
-    most = agreeing;
+    const int associated = aligner_.judge(surface_now(), candidate, world_from_camera).associated;
+    if (associated <= most) continue;
+    most = associated;
     best = candidate;
   }
   return best;
@@ -45,7 +43,7 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
                                                  const Se3& predicted, double seconds) {
   const Se3 guess = pose ? pose->world_from_camera : predicted;
   const SurfaceReference reference = choose_surface(map, guess);
-  if (!reference.grid) return pose;
+
   const PosePriorTerm prior = motion_prior(predicted, seconds);
   if (!pose) {
     // Surfaces alone bring the camera near; then the landmarks around can be looked for.
@@ -57,7 +55,10 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
     return hold_by_surfaces(reference, first.solution.world_from_camera, prior, seconds);
   }
   const auto held = hold_by_surfaces(reference, guess, prior, seconds);
-  return held ? held : pose;
+  if (held) return held;
+  // A few matches that the surfaces contradict are a coincidence.
+  const DepthAlignment judged = aligner_.judge(surface_now(), reference, guess);
+  return judged.contradicts() ? std::nullopt : pose;
 }
 
 std::optional<FramePose> Tracker::hold_by_surfaces(const SurfaceReference& reference, const Se3& guess,
@@ -69,10 +70,8 @@ std::optional<FramePose> Tracker::hold_by_surfaces(const SurfaceReference& refer
   std::vector<std::uint8_t> inlier(observations.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned.solution.fit[i]);
   matches_.keep(inlier);
-  // What only the prediction held is passed on as weakly as it was known.
-  now_.surface_link = SurfaceLink{reference.id, reference.world_from_keyframe.inverse() * pose,
-                                  aligned.surface_information + prior.information};
-  return FramePose{pose, matches_.size(), true, aligned.solution.degenerate};
+  now_.surface_reference = reference.id;
+  return FramePose{pose, matches_.size(), true, aligned.surface_information, aligned.solution.degenerate};
 }
 
 bool Tracker::surfaces_agree(const Map& map, const FramePose& pose) {
@@ -82,7 +81,7 @@ bool Tracker::surfaces_agree(const Map& map, const FramePose& pose) {
   const DepthAlignment judged = aligner_.judge(
       surface_now(), {local_map_.reference(), keyframe->world_from_camera, keyframe->surface.get()},
       pose.world_from_camera);
-  if (judged.associated >= enough_samples) return judged.convincing();
+  if (judged.associated >= enough_samples) return !judged.contradicts();
   // Too little common surface to tell: then the matches must tell by their number.
   return pose.inliers >= 2 * options_.recovery.min_relocalisation_inliers;
 }
