@@ -51,7 +51,8 @@ TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, in
     pose = refine_on_local_map(map, *pose);
   }
   if (pose && guessed && !surfaces_agree(map, *pose)) pose.reset();
-  if (pose && !believable(world_from_last, pose->world_from_camera, seconds)) pose.reset();
+  if (pose && lost_ && pose->inliers < options_.recovery.min_relocalisation_inliers) pose.reset();
+  if (pose && !believable(world_from_last, predicted, pose->world_from_camera, seconds)) pose.reset();
   if (!lost_ && (!pose || pose->inliers < options_.few_inliers)) {
     const Span span(trace, "align_surfaces");
     pose = align_surfaces(map, pose, predicted, seconds);
@@ -234,12 +235,21 @@ void Tracker::project_local_map(const Map& map, const Se3& world_from_camera) {
   }
 }
 
-bool Tracker::believable(const Se3& world_from_last, const Se3& world_from_now, double seconds) const {
+// A camera in a hand or on a robot cannot go faster than so much, nor change its velocity at once: where the motion
+// is known, a pose far from the prediction is a place that looks alike.
+bool Tracker::believable(const Se3& world_from_last, const Se3& predicted, const Se3& world_from_now,
+                         double seconds) const {
   if (!world_from_now.finite()) return false;
+  constexpr double slack_m = 0.1, slack_rad = 0.15;
   const Se3 step = world_from_last.inverse() * world_from_now;
-  constexpr double slack_m = 0.1, slack_rad = 0.1;
-  return step.translation().norm() <= options_.max_speed_m_per_s * seconds + slack_m &&
-         rotation_angle(step.rotation()) <= options_.max_turn_rad_per_s * seconds + slack_rad;
+  if (step.translation().norm() > options_.max_speed_m_per_s * seconds + slack_m ||
+      rotation_angle(step.rotation()) > options_.max_turn_rad_per_s * seconds + slack_rad) {
+    return false;
+  }
+  if (lost_ || !motion_.known()) return true;
+  const Se3 surprise = predicted.inverse() * world_from_now;
+  return surprise.translation().norm() <= options_.max_velocity_change_m_per_s * seconds + slack_m &&
+         rotation_angle(surprise.rotation()) <= options_.max_turn_change_rad_per_s * seconds + slack_rad;
 }
 
 TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog) {

@@ -33,6 +33,8 @@ struct TrackerOptions {
   int min_features_to_start = 100;
   double max_speed_m_per_s = 3.0;
   double max_turn_rad_per_s = 5.0;
+  double max_velocity_change_m_per_s = 1.2;
+  double max_turn_change_rad_per_s = 2.5;
   double coast_s = 0.4;
   int coast_frames = 3;
   KeyframePolicyOptions keyframe;
@@ -50,6 +52,10 @@ void describe(TrackerOptions& o, Visitor& field) {
   field("min_features_to_start", o.min_features_to_start, 20, 5000, "features with depth needed to start a map");
   field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0, "a pose that would need more speed is rejected");
   field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0, "a pose that would need a faster turn is rejected");
+  field("max_velocity_change_m_per_s", o.max_velocity_change_m_per_s, 0.1, 100.0,
+        "a pose that would need a larger change of velocity from one frame to the next is rejected");
+  field("max_turn_change_rad_per_s", o.max_turn_change_rad_per_s, 0.1, 100.0,
+        "a pose that would need a larger change of turn rate from one frame to the next is rejected");
   field("coast_s", o.coast_s, 0.0, 5.0, "how long the motion model is believed when nothing is measured");
   field("coast_frames", o.coast_frames, 0, 100, "frames for which it is believed at least, however slow they come");
 }
@@ -94,7 +100,7 @@ class Tracker {
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
   const DepthGrid& surface_now() const { return *now_.surface; }
-  bool believable(const Se3& world_from_last, const Se3& world_from_now, double seconds) const;
+  bool believable(const Se3& world_from_last, const Se3& predicted, const Se3& world_from_now, double seconds) const;
   void adopt_landmarks_of_own_keyframe(const Map& map);
   KeyframeId choose_anchor(const Map& map) const;
   TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);
