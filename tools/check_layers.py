@@ -51,7 +51,7 @@ INCLUDE_RULES = (
         r"^(unsupported/)?Eigen/(?!Core$|Geometry$|StdVector$)", "solve geometry",
         "Eigen's solvers stay in core/solve and core/geometry", in_tests=False,
     ),
-    _rule(r"^opencv2/", "vision", "OpenCV stays behind core/vision", in_tests=False),
+    _rule(r"^opencv2/", "", "the project does without OpenCV", in_tests=False),
     _rule(r"^(ceres|glog)/", "", "Ceres is an oracle for tests, never shipped", in_tests=True),
     _rule(
         CLOCKS_AND_THREADS, "system base",
@@ -189,7 +189,7 @@ def _line_problems(layers: dict[str, Layer], name: Path, line: str) -> Iterator[
             yield f'includes "{included}": write the path from the project\'s root'
         elif not in_core:
             if included.startswith("opencv2/"):
-                yield f"includes <{included}>: OpenCV stays behind core/vision"
+                yield f"includes <{included}>: the project does without OpenCV"
         elif included.startswith("bindings/"):
             yield f"includes {included}: the core knows nothing of Python"
         elif name.parts[1] in layers:

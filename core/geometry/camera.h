@@ -1,4 +1,4 @@
-// Pinhole camera with Brown-Conrady distortion (Brown 1966; the model of OpenCV and the TUM benchmark) and the
+// Pinhole camera with Brown-Conrady distortion (Brown 1966; the model of the TUM benchmark) and the
 // depth sensor's properties. Pixel centres are at integers; camera axes x right, y down, z forward.
 #pragma once
 
