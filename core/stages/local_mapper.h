@@ -20,8 +20,8 @@ struct LocalMapperOptions {
   int triangulation_neighbours = 4;
   int window_keyframes = 25;
   int window_witnesses = 25;
-  int iterations_before_dropping = 2;
-  int iterations = 3;
+  int iterations_before_dropping = 5;
+  int iterations = 10;
   double sigma_px = 1.0;
   CullingOptions culling;
 };
