@@ -65,7 +65,13 @@ void BM_pose(benchmark::State& state) {
   state.counters["iterations"] = solution.iterations;
   state.counters["inliers"] = solution.inliers;
 }
-BENCHMARK(BM_pose)->Arg(150)->Arg(600)->Arg(1200)->Unit(benchmark::kMicrosecond)->Repetitions(3)->ReportAggregatesOnly();
+BENCHMARK(BM_pose)
+    ->Arg(150)
+    ->Arg(600)
+    ->Arg(1200)
+    ->Unit(benchmark::kMicrosecond)
+    ->Repetitions(3)
+    ->ReportAggregatesOnly();
 
 // Pose without prediction: 200 matches, half of them wrong.
 void BM_align_matches(benchmark::State& state) {

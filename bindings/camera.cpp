@@ -13,14 +13,16 @@ namespace vsgraphs {
 
 void bind_camera(nb::module_& m) {
   using Noise = std::array<double, 3>;
-  nb::class_<Camera>(m, "Camera",
-                     "Pinhole camera with Brown-Conrady distortion and the depth sensor's properties.\n\n"
-                     "Pixels have their centres at integers; axes: x right, y down, z forward. Lengths in metres.")
+  nb::class_<Camera>(
+      m, "Camera",
+      "Pinhole camera with Brown-Conrady distortion and the depth sensor's properties.\n\n"
+      "Pixels have their centres at integers; axes: x right, y down, z forward. Lengths in metres.")
       .def(
           "__init__",
           [](Camera* self, int width, int height, double fx, double fy, double cx, double cy,
-             std::array<double, 5> distortion, double fps, double depth_scale, double depth_min_m, double depth_max_m,
-             std::vector<std::uint16_t> invalid_depth, Noise noise, double depth_alignment_m) {
+             std::array<double, 5> distortion, double fps, double depth_scale, double depth_min_m,
+             double depth_max_m, std::vector<std::uint16_t> invalid_depth, Noise noise,
+             double depth_alignment_m) {
             Camera camera;
             camera.width = width;
             camera.height = height;
@@ -39,8 +41,9 @@ void bind_camera(nb::module_& m) {
             new (self) Camera(std::move(camera));
           },
           "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a, nb::kw_only(),
-          "distortion"_a = std::array<double, 5>{}, "fps"_a = 30.0, "depth_scale"_a = 5000.0, "depth_min_m"_a = 0.3,
-          "depth_max_m"_a = 8.0, "invalid_depth"_a = std::vector<std::uint16_t>{0, 65535},
+          "distortion"_a = std::array<double, 5>{}, "fps"_a = 30.0, "depth_scale"_a = 5000.0,
+          "depth_min_m"_a = 0.3, "depth_max_m"_a = 8.0,
+          "invalid_depth"_a = std::vector<std::uint16_t>{0, 65535},
           "depth_noise"_a = Noise{0.0012, 0.0019, 0.4}, "depth_alignment_m"_a = 0.02,
           "Args:\n"
           "  width, height: image size, px.\n"
@@ -67,15 +70,18 @@ void bind_camera(nb::module_& m) {
       .def_rw("invalid_depth", &Camera::invalid_depth)
       .def_prop_rw(
           "depth_noise",
-          [](const Camera& c) { return Noise{c.depth_noise.offset_m, c.depth_noise.scale_per_m, c.depth_noise.onset_m}; },
+          [](const Camera& c) {
+            return Noise{c.depth_noise.offset_m, c.depth_noise.scale_per_m, c.depth_noise.onset_m};
+          },
           [](Camera& c, Noise n) { c.depth_noise = {n[0], n[1], n[2], c.depth_noise.alignment_m}; })
       .def_prop_rw(
           "depth_alignment_m", [](const Camera& c) { return c.depth_noise.alignment_m; },
           [](Camera& c, double value) { c.depth_noise.alignment_m = value; })
       .def("validate", &Camera::validate, "Raises InputError naming the first value that makes no sense.")
       .def("__repr__", [](const Camera& c) {
-        return "Camera(" + std::to_string(c.width) + "x" + std::to_string(c.height) + ", fx=" + std::to_string(c.fx) +
-               ", fy=" + std::to_string(c.fy) + ", cx=" + std::to_string(c.cx) + ", cy=" + std::to_string(c.cy) + ")";
+        return "Camera(" + std::to_string(c.width) + "x" + std::to_string(c.height) +
+               ", fx=" + std::to_string(c.fx) + ", fy=" + std::to_string(c.fy) +
+               ", cx=" + std::to_string(c.cx) + ", cy=" + std::to_string(c.cy) + ")";
       });
 }
 

@@ -35,7 +35,8 @@ void bind_config(nb::module_& m) {
   nb::class_<Config>(m, "Config", "All options of a run, by dotted keys such as \"tracker.coast_s\".")
       .def(nb::init<>())
       .def("set", &Config::set, "key"_a, "value"_a,
-           "Sets one option. Raises InputError for an unknown key (naming the nearest), a wrong type or a value "
+           "Sets one option. Raises InputError for an unknown key (naming the nearest), a wrong type or a "
+           "value "
            "out of range (naming the range).")
       .def("get", &Config::get, "key"_a, "The option's value. Raises InputError for an unknown key.")
       .def("keys",

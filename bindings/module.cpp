@@ -22,7 +22,8 @@ NB_MODULE(_core, m) {
         info["compiler"] = VSGRAPHS_COMPILER;
         return info;
       },
-      nanobind::sig("def build_info() -> dict[str, str]"), "What the module was built from: commit and compiler.");
+      nanobind::sig("def build_info() -> dict[str, str]"),
+      "What the module was built from: commit and compiler.");
   vsgraphs::bind_camera(m);
   vsgraphs::bind_config(m);
   vsgraphs::bind_slam(m);

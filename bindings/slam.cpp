@@ -28,18 +28,20 @@ std::string shape_of(const AnyImage& image) {
 template <typename T>
 ImageView<T> view_of(const AnyImage& image, const char* name, std::int64_t channels) {
   const bool dense = image.stride(1) == channels && (image.ndim() == 2 || image.stride(2) == 1);
-  require_input(dense && image.stride(0) % channels == 0,
-                std::string(name) + ": the image's rows are not contiguous; pass numpy.ascontiguousarray(image)");
-  return {static_cast<const T*>(image.data()), static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0)),
-          image.stride(0) / channels};
+  require_input(
+      dense && image.stride(0) % channels == 0,
+      std::string(name) + ": the image's rows are not contiguous; pass numpy.ascontiguousarray(image)");
+  return {static_cast<const T*>(image.data()), static_cast<int>(image.shape(1)),
+          static_cast<int>(image.shape(0)), image.stride(0) / channels};
 }
 
 RgbdFrame frame_of(const AnyImage& rgb, const AnyImage& depth, double timestamp) {
   RgbdFrame frame;
   frame.timestamp_s = timestamp;
   const bool grey = rgb.ndim() == 2;
-  require_input(rgb.dtype() == nb::dtype<std::uint8_t>() && (grey || (rgb.ndim() == 3 && rgb.shape(2) == 3)),
-                "rgb: must be uint8 of shape (height, width, 3) or (height, width), not of shape " + shape_of(rgb));
+  require_input(
+      rgb.dtype() == nb::dtype<std::uint8_t>() && (grey || (rgb.ndim() == 3 && rgb.shape(2) == 3)),
+      "rgb: must be uint8 of shape (height, width, 3) or (height, width), not of shape " + shape_of(rgb));
   if (grey) {
     frame.grey = view_of<std::uint8_t>(rgb, "rgb", 1);
   } else {
@@ -132,15 +134,18 @@ nb::list trace_of(const Slam& slam) {
 
 void bind_results(nb::module_& m) {
   nb::class_<TrackedFrame>(m, "TrackResult", "What became of one frame.")
-      .def_prop_ro("status", [](const TrackedFrame& f) { return to_string(f.status); },
-                   "waiting, initialised, ok, coasting, lost or relocalised")
+      .def_prop_ro(
+          "status", [](const TrackedFrame& f) { return to_string(f.status); },
+          "waiting, initialised, ok, coasting, lost or relocalised")
       .def_prop_ro("tracked", [](const TrackedFrame& f) { return has_pose(f.status); })
-      .def_prop_ro("world_from_camera", &pose_or_none,
-                   nb::sig("def world_from_camera(self) -> numpy.typing.NDArray[numpy.float64] | None"),
-                   "(4, 4) float64 as known when the frame was tracked; None without a pose. World: the first "
-                   "keyframe's camera.")
+      .def_prop_ro(
+          "world_from_camera", &pose_or_none,
+          nb::sig("def world_from_camera(self) -> numpy.typing.NDArray[numpy.float64] | None"),
+          "(4, 4) float64 as known when the frame was tracked; None without a pose. World: the first "
+          "keyframe's camera.")
       .def_prop_ro("is_keyframe", [](const TrackedFrame& f) { return f.keyframe_request != nullptr; })
-      .def_prop_ro("matches", [](const TrackedFrame& f) { return f.matches; }, "inlier matches behind the pose");
+      .def_prop_ro(
+          "matches", [](const TrackedFrame& f) { return f.matches; }, "inlier matches behind the pose");
 
   nb::class_<Map>(m, "Snapshot", "The map at one moment; it never changes.")
       .def_prop_ro("version", &Map::version)
@@ -170,29 +175,35 @@ void bind_slam(nb::module_& m) {
           },
           "rgb"_a, "depth"_a, "timestamp"_a,
           nb::sig("def track(self, rgb: numpy.typing.NDArray[numpy.uint8], depth: "
-                  "numpy.typing.NDArray[numpy.uint16] | numpy.typing.NDArray[numpy.float32], timestamp: float) -> "
+                  "numpy.typing.NDArray[numpy.uint16] | numpy.typing.NDArray[numpy.float32], timestamp: "
+                  "float) -> "
                   "TrackResult"),
           "Tracks one frame; the images are only read during the call.\n\n"
           "Args:\n"
           "  rgb: uint8, (height, width, 3) in RGB order or (height, width) grey.\n"
-          "  depth: (height, width), uint16 in raw units (Camera.depth_scale per metre) or float32 in metres.\n"
+          "  depth: (height, width), uint16 in raw units (Camera.depth_scale per metre) or float32 in "
+          "metres.\n"
           "  timestamp: seconds, later than the last frame's.\n\n"
-          "Raises InputError for wrong shapes or types and for timestamps that are not finite or do not rise; the\n"
+          "Raises InputError for wrong shapes or types and for timestamps that are not finite or do not "
+          "rise; the\n"
           "frame then changes nothing. The GIL is released while tracking.")
-      .def("snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
-           "The newest map. Cheap, from any thread.")
+      .def(
+          "snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
+          "The newest map. Cheap, from any thread.")
       .def("finish", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(),
            "Ends the work under way; track() is an error afterwards.")
       .def("close", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(), "The same as finish().")
       .def("trajectory", &trajectory_of,
            nb::sig("def trajectory(self) -> tuple[numpy.typing.NDArray[numpy.float64], "
                    "numpy.typing.NDArray[numpy.float64]]"),
-           "(timestamps (N,) float64 s, world_from_camera (N, 4, 4) float64) of all frames with a pose, corrected "
+           "(timestamps (N,) float64 s, world_from_camera (N, 4, 4) float64) of all frames with a pose, "
+           "corrected "
            "by everything learned since.")
       .def("statistics", &statistics_of, nb::sig("def statistics(self) -> dict[str, typing.Any]"),
            "frames, tracked, waited_s, warnings and stages; complete after finish().")
       .def("trace", &trace_of, nb::sig("def trace(self) -> list[tuple[str, str, int, int, int]]"),
-           "List of (lane, stage, begin_us, duration_us, frame); complete after finish(). Time is the monotonic "
+           "List of (lane, stage, begin_us, duration_us, frame); complete after finish(). Time is the "
+           "monotonic "
            "clock's.")
       .def_prop_ro("backlog", &Slam::backlog, "keyframes waiting for the mapper");
 }

@@ -9,7 +9,9 @@ namespace vsgraphs {
 namespace {
 
 TEST(Rng, RepeatsByItsThreeNamesAndDiffersByEach) {
-  const auto first = [](std::uint64_t seed, const char* stage, std::uint64_t id) { return Rng(seed, stage, id).next(); };
+  const auto first = [](std::uint64_t seed, const char* stage, std::uint64_t id) {
+    return Rng(seed, stage, id).next();
+  };
   EXPECT_EQ(first(1, "a", 2), first(1, "a", 2));
   EXPECT_NE(first(1, "a", 2), first(2, "a", 2));
   EXPECT_NE(first(1, "a", 2), first(1, "b", 2));

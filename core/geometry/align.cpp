@@ -10,7 +10,8 @@ namespace vsgraphs {
 std::optional<Se3> align_points(std::span<const Eigen::Vector3d> in_a, std::span<const Eigen::Vector3d> in_b,
                                 std::span<const double> weights) {
   require_input(in_a.size() == in_b.size(), "align_points: the two point sets must have the same length");
-  require_input(weights.empty() || weights.size() == in_a.size(), "align_points: give one weight per pair, or none");
+  require_input(weights.empty() || weights.size() == in_a.size(),
+                "align_points: give one weight per pair, or none");
   const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
   Eigen::Vector3d mean_a = Eigen::Vector3d::Zero(), mean_b = Eigen::Vector3d::Zero();
   double total = 0;

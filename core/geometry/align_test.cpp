@@ -87,7 +87,8 @@ TEST(AlignPoints, IsTheLeastSquaresOptimum) {
 
 TEST(AlignPoints, NothingWhereARotationIsOpen) {
   const Se3 truth = some_transform(1.0);
-  const Pairs line = pairs(truth, 20, 0, {1, 0, 0}), two = pairs(truth, 2, 0), same = pairs(truth, 9, 0, {0, 0, 0});
+  const Pairs line = pairs(truth, 20, 0, {1, 0, 0}), two = pairs(truth, 2, 0),
+              same = pairs(truth, 9, 0, {0, 0, 0});
   EXPECT_FALSE(align_points(line.a, line.b));
   EXPECT_FALSE(align_points(two.a, two.b));
   EXPECT_FALSE(align_points(same.a, same.b));

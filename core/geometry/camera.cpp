@@ -1,7 +1,6 @@
 #include "core/geometry/camera.h"
 
 #include <Eigen/LU>
-
 #include <cmath>
 #include <string>
 
@@ -42,8 +41,9 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& distorted_px) const {
 
 void Camera::validate() const {
   const auto positive = [](double value, const char* name) {
-    require_input(std::isfinite(value) && value > 0,
-                  std::string("camera: ") + name + " must be a positive number, not " + std::to_string(value));
+    require_input(
+        std::isfinite(value) && value > 0,
+        std::string("camera: ") + name + " must be a positive number, not " + std::to_string(value));
   };
   require_input(width >= 64 && height >= 64 && width <= 8192 && height <= 8192,
                 "camera: width and height must lie in 64..8192 px, not " + std::to_string(width) + "x" +
@@ -60,7 +60,8 @@ void Camera::validate() const {
   require_input(std::isfinite(cx) && std::isfinite(cy) && contains(cx, cy),
                 "camera: the principal point (cx, cy) lies outside the image");
   require_input(depth_max_m > depth_min_m, "camera: depth_max_m must exceed depth_min_m");
-  for (double k : distortion) require_input(std::isfinite(k), "camera: distortion holds a value that is not finite");
+  for (double k : distortion)
+    require_input(std::isfinite(k), "camera: distortion holds a value that is not finite");
 }
 
 }  // namespace vsgraphs

@@ -75,11 +75,14 @@ TEST(Camera, ValidateNamesTheField) {
   };
   EXPECT_EQ(message([](Camera&) {}), "");
   EXPECT_NE(message([](Camera& c) { c.fx = 0; }).find("fx"), std::string::npos);
-  EXPECT_NE(message([](Camera& c) { c.fy = std::numeric_limits<double>::quiet_NaN(); }).find("fy"), std::string::npos);
+  EXPECT_NE(message([](Camera& c) { c.fy = std::numeric_limits<double>::quiet_NaN(); }).find("fy"),
+            std::string::npos);
   EXPECT_NE(message([](Camera& c) { c.width = 3; }).find("width"), std::string::npos);
   EXPECT_NE(message([](Camera& c) { c.cx = 900; }).find("principal point"), std::string::npos);
   EXPECT_NE(message([](Camera& c) { c.depth_max_m = 0.1; }).find("depth_max_m"), std::string::npos);
-  EXPECT_NE(message([](Camera& c) { c.distortion[2] = std::numeric_limits<double>::infinity(); }).find("distortion"),
+  EXPECT_NE(message([](Camera& c) {
+              c.distortion[2] = std::numeric_limits<double>::infinity();
+            }).find("distortion"),
             std::string::npos);
 }
 

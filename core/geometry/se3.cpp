@@ -1,7 +1,6 @@
 #include "core/geometry/se3.h"
 
 #include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,7 +26,8 @@ Coefficients coefficients(double theta2) {
             1.0 / 6 - theta2 / 120 * (1 - theta2 / 42)};
   }
   const double theta = std::sqrt(theta2);
-  return {std::sin(theta) / theta, (1 - std::cos(theta)) / theta2, (theta - std::sin(theta)) / (theta2 * theta)};
+  return {std::sin(theta) / theta, (1 - std::cos(theta)) / theta2,
+          (theta - std::sin(theta)) / (theta2 * theta)};
 }
 
 }  // namespace

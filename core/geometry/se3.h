@@ -27,7 +27,9 @@ class Se3 {
   static Se3 from_quaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& t) {
     return {q.normalized().toRotationMatrix(), t};
   }
-  static Se3 from_matrix(const Eigen::Matrix4d& m) { return {m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()}; }
+  static Se3 from_matrix(const Eigen::Matrix4d& m) {
+    return {m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
+  }
   static Se3 exp(const Vector6d& xi);
 
   const Eigen::Matrix3d& rotation() const { return rotation_; }

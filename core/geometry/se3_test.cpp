@@ -13,7 +13,9 @@ namespace {
 
 using std::numbers::pi;
 
-Eigen::Vector3d axis(Rng& rng) { return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized(); }
+Eigen::Vector3d axis(Rng& rng) {
+  return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+}
 
 Vector6d tangent(const Eigen::Vector3d& rho, const Eigen::Vector3d& phi) {
   Vector6d xi;
@@ -23,7 +25,7 @@ Vector6d tangent(const Eigen::Vector3d& rho, const Eigen::Vector3d& phi) {
 }
 
 // Around the switch to series (1e-2 in the angle), near 0 and near a half turn.
-const std::vector<double> angles{0,   1e-300, 1e-12, 1e-9,      1e-6,      1e-4,       0.00999, 0.01001,
+const std::vector<double> angles{0,   1e-300, 1e-12, 1e-9,      1e-6,      1e-4,      0.00999,   0.01001,
                                  0.1, 1.0,    3.0,   pi - 1e-3, pi - 1e-6, pi - 1e-9, pi - 1e-12};
 
 TEST(So3, LogarithmUndoesTheExponential) {
@@ -33,7 +35,8 @@ TEST(So3, LogarithmUndoesTheExponential) {
       const Eigen::Vector3d phi = angle * axis(rng);
       const Eigen::Vector3d back = so3_log(so3_exp(phi));
       // At a half turn the axis may come back reversed.
-      const double error = angle > pi - 1e-5 ? std::min((back - phi).norm(), (back + phi).norm()) : (back - phi).norm();
+      const double error =
+          angle > pi - 1e-5 ? std::min((back - phi).norm(), (back + phi).norm()) : (back - phi).norm();
       EXPECT_LT(error, 4e-14 * std::min(1.0, angle + 1e-2)) << angle;
     }
   }

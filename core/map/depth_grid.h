@@ -9,8 +9,9 @@
 namespace vsgraphs {
 
 struct SurfaceSample {
-  Eigen::Vector3f point = Eigen::Vector3f::Zero();   // m, camera frame; z = 0: no reading
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // unit, towards the camera; zero: not on a smooth surface
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();  // m, camera frame; z = 0: no reading
+  Eigen::Vector3f normal =
+      Eigen::Vector3f::Zero();  // unit, towards the camera; zero: not on a smooth surface
   bool has_normal() const { return normal.z() != 0; }
 };
 

@@ -7,7 +7,8 @@
 
 namespace vsgraphs {
 
-FeatureSet::FeatureSet(std::vector<Feature> features, std::vector<Descriptor> descriptors, int width, int height)
+FeatureSet::FeatureSet(std::vector<Feature> features, std::vector<Descriptor> descriptors, int width,
+                       int height)
     : features_(std::move(features)),
       descriptors_(std::move(descriptors)),
       columns_((width + cell_px - 1) / cell_px),
@@ -16,7 +17,9 @@ FeatureSet::FeatureSet(std::vector<Feature> features, std::vector<Descriptor> de
   VSG_INVARIANT(features_.size() <= 65535);
   // Counting sort by cell: two passes, no allocation per cell.
   cell_begin_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-  const auto cell_of = [this](const Feature& f) { return static_cast<std::size_t>(row(f.v)) * columns_ + column(f.u); };
+  const auto cell_of = [this](const Feature& f) {
+    return static_cast<std::size_t>(row(f.v)) * columns_ + column(f.u);
+  };
   for (const Feature& f : features_) ++cell_begin_[cell_of(f) + 1];
   for (std::size_t c = 1; c < cell_begin_.size(); ++c) cell_begin_[c] += cell_begin_[c - 1];
   cell_items_.resize(features_.size());

@@ -19,7 +19,7 @@ struct Observation {
 struct Appearance {
   Descriptor descriptor;                                      // the observation nearest to all others
   Eigen::Vector3f view_direction = Eigen::Vector3f::UnitZ();  // mean unit vector camera -> point, world frame
-  float reference_distance_m = 0;                             // distance at which `reference_level` was observed
+  float reference_distance_m = 0;  // distance at which `reference_level` was observed
   std::uint8_t reference_level = 0;
   Rgb colour;
 };

@@ -37,8 +37,9 @@ class MapTest : public ::testing::Test {
     map.apply(draft.take());
   }
   void observe(Draft& draft, int landmark, int keyframe, int feature) {
-    draft.record(AddObservation{landmarks[static_cast<std::size_t>(landmark)],
-                                {keyframes[static_cast<std::size_t>(keyframe)], static_cast<std::uint16_t>(feature)}});
+    draft.record(
+        AddObservation{landmarks[static_cast<std::size_t>(landmark)],
+                       {keyframes[static_cast<std::size_t>(keyframe)], static_cast<std::uint16_t>(feature)}});
   }
   // Every observation is known to both sides.
   void expect_consistent(const Map& m) const {
@@ -53,7 +54,8 @@ class MapTest : public ::testing::Test {
         if (!keyframe.landmarks[i].valid()) continue;
         const Landmark* landmark = m.landmarks().find(keyframe.landmarks[i]);
         ASSERT_NE(landmark, nullptr);
-        EXPECT_THAT(landmark->observations, ::testing::Contains(Observation{id, static_cast<std::uint16_t>(i)}));
+        EXPECT_THAT(landmark->observations,
+                    ::testing::Contains(Observation{id, static_cast<std::uint16_t>(i)}));
       }
     });
   }

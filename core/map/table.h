@@ -22,7 +22,11 @@ class Table {
  public:
   Table() = default;
   Table(const Table& other)
-      : chunks_(other.chunks_), free_(other.free_), slots_(other.slots_), size_(other.size_), epoch_(other.epoch_ + 1) {}
+      : chunks_(other.chunks_),
+        free_(other.free_),
+        slots_(other.slots_),
+        size_(other.size_),
+        epoch_(other.epoch_ + 1) {}
   Table& operator=(const Table& other) {
     Table copy(other);
     std::swap(*this, copy);

@@ -121,8 +121,9 @@ class Ransac {
 
 }  // namespace
 
-std::optional<PoseSolution> align_matches(const Intrinsics& intrinsics, std::span<const PoseObservation> matches,
-                                          Rng rng, const AlignMatchesOptions& options) {
+std::optional<PoseSolution> align_matches(const Intrinsics& intrinsics,
+                                          std::span<const PoseObservation> matches, Rng rng,
+                                          const AlignMatchesOptions& options) {
   Ransac ransac(intrinsics, matches, options);
   const std::optional<Se3> pose = ransac.run(rng);
   if (!pose) return {};

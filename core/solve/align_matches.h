@@ -22,7 +22,8 @@ struct AlignMatchesOptions {
 
 // `matches`: those with depth are drawn from; those without are counted and refined with. The solution's `fit` is in the
 // order of `matches`. Deterministic in `rng`. Cost about 4 ns per match and hypothesis.
-std::optional<PoseSolution> align_matches(const Intrinsics& intrinsics, std::span<const PoseObservation> matches,
-                                          Rng rng, const AlignMatchesOptions& options = {});
+std::optional<PoseSolution> align_matches(const Intrinsics& intrinsics,
+                                          std::span<const PoseObservation> matches, Rng rng,
+                                          const AlignMatchesOptions& options = {});
 
 }  // namespace vsgraphs

@@ -85,7 +85,8 @@ void LevenbergMarquardt::linearise() {
   for (int v = 0; v < pattern_.variables(); ++v) {
     const double* block = normal_.data() + pattern_.value_begin(pattern_.diagonal(v));
     const int dim = pattern_.dim(v);
-    for (int i = 0; i < dim; ++i) diagonal_[pattern_.offset(v) + i] = std::max(block[i * dim + i], min_diagonal);
+    for (int i = 0; i < dim; ++i)
+      diagonal_[pattern_.offset(v) + i] = std::max(block[i * dim + i], min_diagonal);
   }
 }
 
@@ -143,7 +144,8 @@ void LevenbergMarquardt::run(int budget, const std::function<bool()>& stop, Solv
 
 }  // namespace
 
-SolveReport solve_bundle(BundleProblem& problem, const BundleOptions& options, const std::function<bool()>& stop) {
+SolveReport solve_bundle(BundleProblem& problem, const BundleOptions& options,
+                         const std::function<bool()>& stop) {
   validate(problem, options);
   SolveReport report;
   LevenbergMarquardt solver(problem, options);
@@ -159,7 +161,8 @@ SolveReport solve_bundle(BundleProblem& problem, const BundleOptions& options, c
   }
   if (!report.stopped) solver.run(options.max_iterations, stop, report);
   report.fit = solver.classify_all(problem);
-  report.outliers = static_cast<int>(std::count(report.fit.begin(), report.fit.end(), ObservationFit::outlier));
+  report.outliers =
+      static_cast<int>(std::count(report.fit.begin(), report.fit.end(), ObservationFit::outlier));
   problem.poses = solver.state().poses;
   problem.landmarks = solver.state().landmarks;
   problem.structures = solver.state().structures;

@@ -31,8 +31,8 @@ struct ReprojectionObservation {
 
 struct BundleProblem {
   Intrinsics intrinsics;
-  std::vector<Se3> poses;                 // world_from_camera
-  std::vector<std::uint8_t> pose_fixed;   // same length as poses, or empty: none fixed
+  std::vector<Se3> poses;                  // world_from_camera
+  std::vector<std::uint8_t> pose_fixed;    // same length as poses, or empty: none fixed
   std::vector<Eigen::Vector3d> landmarks;  // m, in the world
   std::vector<ReprojectionObservation> observations;
   StructureVariables structures;
@@ -46,15 +46,16 @@ struct BundleOptions {
   double huber_px = huber_2dof.delta;     // sigmas, observations without depth
   double huber_depth = huber_3dof.delta;  // sigmas, observations with depth
   double initial_lambda = 1e-5;           // relative to the diagonal
-  double relative_tolerance = 1e-6;       // converged when an accepted step lowers the cost by less than this share
-  int max_dense_poses = 150;              // more free variables than this: sparse Cholesky
+  double relative_tolerance =
+      1e-6;                   // converged when an accepted step lowers the cost by less than this share
+  int max_dense_poses = 150;  // more free variables than this: sparse Cholesky
 };
 
 struct SolveReport {
   double initial_cost = 0;  // sum of rho(|r|^2) / 2, at the start and at the end, over the same observations
   double final_cost = 0;
-  int iterations = 0;       // steps tried
-  int accepted = 0;         // steps taken
+  int iterations = 0;  // steps tried
+  int accepted = 0;    // steps taken
   bool converged = false;
   bool stopped = false;  // `stop` said so
   // Per observation, from the final state, dropped ones included.

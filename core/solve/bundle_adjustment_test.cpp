@@ -160,7 +160,8 @@ TEST(BundleAdjustment, TwiceTheSameBytes) {
   SyntheticWindow a = synthetic_window(small()), b = synthetic_window(small());
   solve_bundle(a.problem);
   solve_bundle(b.problem);
-  EXPECT_EQ(0, std::memcmp(a.problem.poses.data(), b.problem.poses.data(), a.problem.poses.size() * sizeof(Se3)));
+  EXPECT_EQ(
+      0, std::memcmp(a.problem.poses.data(), b.problem.poses.data(), a.problem.poses.size() * sizeof(Se3)));
   EXPECT_EQ(0, std::memcmp(a.problem.landmarks.data(), b.problem.landmarks.data(),
                            a.problem.landmarks.size() * sizeof(Eigen::Vector3d)));
 }
@@ -170,8 +171,8 @@ TEST(BundleAdjustment, SparseAndDenseAgree) {
   const auto add_marker = [](BundleProblem& p) {
     p.structures.markers.push_back(p.poses[8] * Se3::exp(Vector6d::Constant(0.1)));
     p.factors.push_back(std::make_unique<RelativePose>(VariableRef{VariableKind::marker, 0},
-                                                       VariableRef{VariableKind::pose, 2},
-                                                       Se3(), 10 * Matrix6d::Identity()));
+                                                       VariableRef{VariableKind::pose, 2}, Se3(),
+                                                       10 * Matrix6d::Identity()));
     p.factors.push_back(std::make_unique<PosePrior>(VariableRef{VariableKind::marker, 0}, p.poses[1],
                                                     7 * Matrix6d::Identity()));
   };
@@ -184,14 +185,16 @@ TEST(BundleAdjustment, SparseAndDenseAgree) {
   for (std::size_t i = 0; i < dense.problem.poses.size(); ++i) {
     EXPECT_LT((dense.problem.poses[i].inverse() * sparse.problem.poses[i]).log().norm(), 1e-9);
   }
-  EXPECT_TRUE(dense.problem.structures.markers[0].matrix().isApprox(sparse.problem.structures.markers[0].matrix(), 1e-9));
+  EXPECT_TRUE(dense.problem.structures.markers[0].matrix().isApprox(
+      sparse.problem.structures.markers[0].matrix(), 1e-9));
 }
 
 TEST(BundleAdjustment, SeveralViewsOfALandmarkFromOnePoseCountEach) {
   SyntheticWindow once = synthetic_window(small()), twice = synthetic_window(small());
   const auto all = twice.problem.observations;
   twice.problem.observations.insert(twice.problem.observations.end(), all.begin(), all.end());
-  const SolveReport a = solve_bundle(once.problem, iterations(20)), b = solve_bundle(twice.problem, iterations(20));
+  const SolveReport a = solve_bundle(once.problem, iterations(20)),
+                    b = solve_bundle(twice.problem, iterations(20));
   EXPECT_NEAR(b.final_cost, 2 * a.final_cost, 1e-4 * b.final_cost);
   for (std::size_t i = 0; i < once.problem.poses.size(); ++i) {
     EXPECT_LT((once.problem.poses[i].inverse() * twice.problem.poses[i]).log().norm(), 1e-4);
@@ -231,9 +234,9 @@ TEST(BundleAdjustment, PosesInChainWithoutLandmarksAreAPoseGraph) {
                                                            sqrt_information));
   }
   const double drift = (graph.poses[399].translation() - truth[399].translation()).norm();
-  graph.factors.push_back(std::make_unique<RelativePose>(VariableRef{VariableKind::pose, 399},
-                                                         VariableRef{VariableKind::pose, 0},
-                                                         truth[399].inverse() * truth[0], 10 * sqrt_information));
+  graph.factors.push_back(
+      std::make_unique<RelativePose>(VariableRef{VariableKind::pose, 399}, VariableRef{VariableKind::pose, 0},
+                                     truth[399].inverse() * truth[0], 10 * sqrt_information));
   const SolveReport report = solve_bundle(graph, iterations(20));
   EXPECT_TRUE(report.converged);
   EXPECT_GT(drift, 0.02);
@@ -255,7 +258,8 @@ TEST(BundleAdjustment, RefusesWhatItCannotUse) {
   refused([](BundleProblem& p) { p.intrinsics.fx = 0; });
   refused([](BundleProblem& p) { p.factors.push_back(nullptr); });
   refused([](BundleProblem& p) {
-    p.factors.push_back(std::make_unique<PosePrior>(VariableRef{VariableKind::marker, 0}, Se3(), Matrix6d::Identity()));
+    p.factors.push_back(
+        std::make_unique<PosePrior>(VariableRef{VariableKind::marker, 0}, Se3(), Matrix6d::Identity()));
   });
 }
 

@@ -35,12 +35,14 @@ struct Reprojection {
 struct Relative {
   const DenseFactor* factor;
 
-  bool operator()(const double* qa, const double* ta, const double* qb, const double* tb, double* residual) const {
+  bool operator()(const double* qa, const double* ta, const double* qb, const double* tb,
+                  double* residual) const {
     const auto pose = [](const double* q, const double* t) {
-      return Se3::from_quaternion(Eigen::Map<const Eigen::Quaterniond>(q), Eigen::Map<const Eigen::Vector3d>(t));
+      return Se3::from_quaternion(Eigen::Map<const Eigen::Quaterniond>(q),
+                                  Eigen::Map<const Eigen::Vector3d>(t));
     };
-    std::vector<Se3> poses(static_cast<std::size_t>(
-        std::max(factor->variables()[0].index, factor->variables()[1].index) + 1));
+    std::vector<Se3> poses(
+        static_cast<std::size_t>(std::max(factor->variables()[0].index, factor->variables()[1].index) + 1));
     poses[static_cast<std::size_t>(factor->variables()[0].index)] = pose(qa, ta);
     poses[static_cast<std::size_t>(factor->variables()[1].index)] = pose(qb, tb);
     FactorRows rows;
@@ -58,14 +60,17 @@ struct PoseParameters {
 
 class CeresBundle {
  public:
-  CeresBundle(const BundleProblem& input, const BundleOptions& options) : input_(input), landmarks_(input.landmarks) {
+  CeresBundle(const BundleProblem& input, const BundleOptions& options)
+      : input_(input), landmarks_(input.landmarks) {
     for (std::size_t i = 0; i < input.poses.size(); ++i) add_pose(i);
     for (const ReprojectionObservation& o : input.observations) {
       ceres::CostFunction* cost = nullptr;
       if (o.has_depth()) {
-        cost = new ceres::AutoDiffCostFunction<Reprojection, 3, 4, 3, 3>(new Reprojection{input.intrinsics, o});
+        cost =
+            new ceres::AutoDiffCostFunction<Reprojection, 3, 4, 3, 3>(new Reprojection{input.intrinsics, o});
       } else {
-        cost = new ceres::AutoDiffCostFunction<Reprojection, 2, 4, 3, 3>(new Reprojection{input.intrinsics, o});
+        cost =
+            new ceres::AutoDiffCostFunction<Reprojection, 2, 4, 3, 3>(new Reprojection{input.intrinsics, o});
       }
       auto* loss = new ceres::HuberLoss(o.has_depth() ? options.huber_depth : options.huber_px);
       PoseParameters& pose = poses_[static_cast<std::size_t>(o.pose)];

@@ -98,12 +98,14 @@ TEST(DenseFactors, TestFactorHasTheRightJacobians) {
     factor.evaluate({at, moved}, false, out);
     return out.residual;
   };
-  expect_jacobian(rows.jacobians[0], [&](const Eigen::VectorXd& d) {
-    return residual(poses[0].retract(d), structures.planes[0]);
-  }, 1e-7, 1e-3);
-  expect_jacobian(rows.jacobians[1], [&](const Eigen::VectorXd& d) {
-    return residual(poses[0], structures.planes[0].retract(d));
-  }, 1e-7, 1e-3);
+  expect_jacobian(
+      rows.jacobians[0],
+      [&](const Eigen::VectorXd& d) { return residual(poses[0].retract(d), structures.planes[0]); }, 1e-7,
+      1e-3);
+  expect_jacobian(
+      rows.jacobians[1],
+      [&](const Eigen::VectorXd& d) { return residual(poses[0], structures.planes[0].retract(d)); }, 1e-7,
+      1e-3);
 }
 
 // Poses and planes of a room, all disturbed but the first pose: planes seen from several poses restore both.
@@ -122,7 +124,8 @@ class RoomOfPlanes : public ::testing::TestWithParam<int> {
     truth_poses = problem.poses;
     truth_planes = problem.structures.planes;
     for (int i = 1; i < 12; ++i) problem.poses[i] = problem.poses[i].retract(random_tangent(rng, 0.1, 0.05));
-    for (auto& plane : problem.structures.planes) plane = plane.retract({0.1 * rng.normal(), 0.1 * rng.normal(), 0.1});
+    for (auto& plane : problem.structures.planes)
+      plane = plane.retract({0.1 * rng.normal(), 0.1 * rng.normal(), 0.1});
     options.max_iterations = 20;
     options.max_dense_poses = GetParam();
   }
@@ -174,7 +177,8 @@ TEST_P(RoomOfPlanes, StructureAndLandmarksShareOneProblem) {
   SyntheticWindowOptions exact;
   exact.noise = false;
   for (int l = 0; l < 60; ++l) {
-    const Eigen::Vector3d p = truth_poses[0] * problem.intrinsics.unproject(rng.uniform(50, 600), rng.uniform(50, 400), 4);
+    const Eigen::Vector3d p =
+        truth_poses[0] * problem.intrinsics.unproject(rng.uniform(50, 600), rng.uniform(50, 400), 4);
     problem.landmarks.push_back(p + Eigen::Vector3d::Constant(0.02));
     for (int i = 0; i < 4; ++i) {
       if ((truth_poses[i].inverse() * p).z() < 0.5) continue;

@@ -35,8 +35,10 @@ inline void store(double* to, Lanes a) { std::memcpy(to, &a, sizeof a); }
 
 // Rows become columns: r[k] afterwards holds lane k of the four.
 inline void transpose(Lanes r[4]) {
-  const Lanes t0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), t1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-  const Lanes t2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), t3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  const Lanes t0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+              t1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Lanes t2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
+              t3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
   r[0] = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
   r[1] = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
   r[2] = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);

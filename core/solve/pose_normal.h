@@ -11,9 +11,9 @@
 namespace vsgraphs {
 
 struct PoseNormal {
-  Matrix6d h = Matrix6d::Zero();    // J'J, robustly weighted
-  Vector6d b = Vector6d::Zero();    // -J'r
-  double cost = 0;                  // sum of rho / 2
+  Matrix6d h = Matrix6d::Zero();  // J'J, robustly weighted
+  Vector6d b = Vector6d::Zero();  // -J'r
+  double cost = 0;                // sum of rho / 2
 };
 
 // The observations of one solve, transposed for the lanes. Weights of 0 switch an observation or its depth off.
@@ -25,13 +25,14 @@ class PoseRows {
   void accumulate(const Se3& world_from_camera, PoseNormal& sum) const;
   // Gates every observation, switches the outlying (or their depths) off and the others on. `squares` receives the sum of
   // squared residuals that were kept, `rows` their number.
-  void classify_all(const Se3& world_from_camera, std::vector<ObservationFit>& fit, double& squares, int& rows);
+  void classify_all(const Se3& world_from_camera, std::vector<ObservationFit>& fit, double& squares,
+                    int& rows);
 
  private:
   struct Group {
-    Lanes x, y, z;                // points in the world
-    ObservationLanes seen;        // weights in use: 0 when switched off
-    Lanes full_px, full_depth;    // weights as given
+    Lanes x, y, z;              // points in the world
+    ObservationLanes seen;      // weights in use: 0 when switched off
+    Lanes full_px, full_depth;  // weights as given
   };
   Intrinsics k_;
   std::size_t count_;

@@ -31,8 +31,8 @@ struct PosePriorTerm {
 };
 
 struct PoseSolverOptions {
-  int rounds = 4;                 // each ends with the classification of every observation
-  int iterations_per_round = 10;  // at most; a round ends when the step is negligible
+  int rounds = 4;                         // each ends with the classification of every observation
+  int iterations_per_round = 10;          // at most; a round ends when the step is negligible
   double huber_px = huber_2dof.delta;     // sigmas
   double huber_depth = huber_3dof.delta;  // sigmas, observations with depth
   double huber_plane = 1.96;              // sigmas, point-to-plane
@@ -46,7 +46,7 @@ struct PoseSolverOptions {
 
 struct PoseSolution {
   Se3 world_from_camera;
-  std::vector<ObservationFit> fit;         // per observation; pixel_only: its depth disagrees and was left out
+  std::vector<ObservationFit> fit;  // per observation; pixel_only: its depth disagrees and was left out
   std::vector<std::uint8_t> plane_inlier;  // per point-to-plane row
   int inliers = 0;                         // observations, pixel_only included
   int depth_inliers = 0;                   // of those, with a depth that agrees
@@ -62,7 +62,9 @@ struct PoseSolution {
 
 // Deterministic. Never throws for geometry: a hopeless problem returns a finite pose, not converged or degenerate.
 PoseSolution solve_pose(const Intrinsics& intrinsics, const Se3& initial_world_from_camera,
-                        std::span<const PoseObservation> observations, std::span<const PointToPlane> planes = {},
-                        const std::optional<PosePriorTerm>& prior = {}, const PoseSolverOptions& options = {});
+                        std::span<const PoseObservation> observations,
+                        std::span<const PointToPlane> planes = {},
+                        const std::optional<PosePriorTerm>& prior = {},
+                        const PoseSolverOptions& options = {});
 
 }  // namespace vsgraphs

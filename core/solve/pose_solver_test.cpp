@@ -48,7 +48,8 @@ TEST(PoseRows, NormalEquationsAreThoseOfTheFactor) {
 
 TEST(PoseSolver, FindsTheExactPoseWithoutNoise) {
   const SyntheticView view = synthetic_view(200, 0, false);
-  const PoseSolution s = solve_pose(intrinsics, disturbed(view.world_from_camera, 0.1, 0.05), view.observations);
+  const PoseSolution s =
+      solve_pose(intrinsics, disturbed(view.world_from_camera, 0.1, 0.05), view.observations);
   EXPECT_TRUE(s.converged);
   EXPECT_FALSE(s.degenerate);
   EXPECT_EQ(s.inliers, 200);
@@ -60,7 +61,8 @@ TEST(PoseSolver, WithNoiseTheErrorIsWhatTheInformationSays) {
   constexpr int runs = 60;
   for (int i = 0; i < runs; ++i) {
     const SyntheticView view = synthetic_view(200, 0, true, 100 + i);
-    const PoseSolution s = solve_pose(intrinsics, disturbed(view.world_from_camera, 0.03, 0.02), view.observations);
+    const PoseSolution s =
+        solve_pose(intrinsics, disturbed(view.world_from_camera, 0.03, 0.02), view.observations);
     const Vector6d error = (view.world_from_camera.inverse() * s.world_from_camera).log();
     squares += error.dot(s.information * error);
     EXPECT_NEAR(s.mean_chi2, 0.9, 0.2);  // the gate cuts the tails of 1
@@ -71,7 +73,8 @@ TEST(PoseSolver, WithNoiseTheErrorIsWhatTheInformationSays) {
 TEST(PoseSolver, FortyPercentOfWrongMatchesAreFound) {
   for (int run = 0; run < 10; ++run) {
     const SyntheticView view = synthetic_view(300, 120, true, 200 + run);
-    const PoseSolution s = solve_pose(intrinsics, disturbed(view.world_from_camera, 0.05, 0.03), view.observations);
+    const PoseSolution s =
+        solve_pose(intrinsics, disturbed(view.world_from_camera, 0.05, 0.03), view.observations);
     EXPECT_LT(distance(s.world_from_camera, view.world_from_camera), 0.01);
     int kept_wrong = 0;
     for (int i = 0; i < 120; ++i) kept_wrong += is_inlier(s.fit[i]);
@@ -93,7 +96,8 @@ TEST(PoseSolver, GatingFirstKeepsAGoodPoseAmongMostlyWrongMatches) {
 TEST(PoseSolver, DepthThatDisagreesDemotesTheMatchToItsPixel) {
   SyntheticView view = synthetic_view(200, 0, true, 7, 1.0);
   for (int i = 0; i < 50; ++i) view.observations[i].inverse_depth *= 0.6;  // read the surface behind
-  const PoseSolution s = solve_pose(intrinsics, disturbed(view.world_from_camera, 0.02, 0.01), view.observations);
+  const PoseSolution s =
+      solve_pose(intrinsics, disturbed(view.world_from_camera, 0.02, 0.01), view.observations);
   int demoted = 0;
   for (int i = 0; i < 50; ++i) demoted += s.fit[i] == ObservationFit::pixel_only;
   EXPECT_GE(demoted, 44);

@@ -33,8 +33,8 @@ struct ProjectionLanes {
 };
 
 // `wx, wy, wz`: the points in the world.
-inline ProjectionLanes project(const Intrinsics& k, const Se3& world_from_camera, Lanes wx, Lanes wy, Lanes wz,
-                               const ObservationLanes& o) {
+inline ProjectionLanes project(const Intrinsics& k, const Se3& world_from_camera, Lanes wx, Lanes wy,
+                               Lanes wz, const ObservationLanes& o) {
   const Eigen::Matrix3d& r = world_from_camera.rotation();
   const Eigen::Vector3d& t = world_from_camera.translation();
   const Lanes dx = wx - lanes(t[0]), dy = wy - lanes(t[1]), dz = wz - lanes(t[2]);
@@ -93,7 +93,8 @@ struct PoseSums {
     m[0] += i.m00, m[1] += i.m02, m[2] += i.m11, m[3] += i.m12, m[4] += i.m22;
     const Lanes l00 = q.py * i.m02, l10 = q.pz * i.m00 - q.px * i.m02, l20 = -(q.py * i.m00);
     const Lanes l01 = q.py * i.m12 - q.pz * i.m11, l11 = -(q.px * i.m12), l21 = q.px * i.m11;
-    const Lanes l02 = q.py * i.m22 - q.pz * i.m12, l12 = q.pz * i.m02 - q.px * i.m22, l22 = q.px * i.m12 - q.py * i.m02;
+    const Lanes l02 = q.py * i.m22 - q.pz * i.m12, l12 = q.pz * i.m02 - q.px * i.m22,
+                l22 = q.px * i.m12 - q.py * i.m02;
     lower[0] += l00, lower[1] += l10, lower[2] += l20;
     lower[3] += l01, lower[4] += l11, lower[5] += l21;
     lower[6] += l02, lower[7] += l12, lower[8] += l22;
@@ -112,7 +113,8 @@ struct PoseSums {
   // Adds the lower half to `h` and the right side to `to_b`.
   template <typename Matrix, typename Vector>
   void add_to(Matrix&& h, Vector&& to_b) const {
-    h(0, 0) += sum(m[0]), h(2, 0) += sum(m[1]), h(1, 1) += sum(m[2]), h(2, 1) += sum(m[3]), h(2, 2) += sum(m[4]);
+    h(0, 0) += sum(m[0]), h(2, 0) += sum(m[1]), h(1, 1) += sum(m[2]), h(2, 1) += sum(m[3]),
+        h(2, 2) += sum(m[4]);
     for (int k = 0; k < 9; ++k) h(3 + k % 3, k / 3) += sum(lower[k]);
     h(3, 3) += sum(turn[0]), h(4, 3) += sum(turn[1]), h(5, 3) += sum(turn[2]);
     h(4, 4) += sum(turn[3]), h(5, 4) += sum(turn[4]), h(5, 5) += sum(turn[5]);

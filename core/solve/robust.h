@@ -26,7 +26,7 @@ struct Huber {
   }
 };
 
-inline constexpr Huber huber_2dof{2.447746830680816};  // sqrt(chi2_95_2)
+inline constexpr Huber huber_2dof{2.447746830680816};   // sqrt(chi2_95_2)
 inline constexpr Huber huber_3dof{2.7954834829151074};  // sqrt(chi2_95_3)
 
 // What the 95 % gate says of an observation. A depth that disagrees while the pixel agrees demotes the match to its

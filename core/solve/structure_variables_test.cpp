@@ -24,9 +24,14 @@ void expect_manifold(const T& x, int dof, double largest, Retract retract, Local
   }
 }
 
-Eigen::Vector3d unit(Rng& rng) { return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized(); }
+Eigen::Vector3d unit(Rng& rng) {
+  return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+}
 
-const Eigen::Vector3d special_normals[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0},
+const Eigen::Vector3d special_normals[] = {{0, 0, 1},
+                                           {0, 0, -1},
+                                           {1, 0, 0},
+                                           {0, -1, 0},
                                            Eigen::Vector3d(1e-9, 0, -1).normalized(),
                                            Eigen::Vector3d(1e-5, -1e-5, -1).normalized()};
 
@@ -44,9 +49,13 @@ TEST(TangentBasis, IsOrthonormalEverywhere) {
 TEST(PlaneVariable, IsAManifold) {
   Rng rng(2, "structure_variables_test", 0);
   const auto retract = [](const PlaneVariable& p, const Eigen::VectorXd& d) { return p.retract(d); };
-  const auto local = [](const PlaneVariable& a, const PlaneVariable& b) -> Eigen::VectorXd { return a.local(b); };
-  for (const Eigen::Vector3d& n : special_normals) expect_manifold<PlaneVariable>({n, {1, 2, 3}, 0.2}, 3, 1, retract, local, rng);
-  for (int i = 0; i < 20; ++i) expect_manifold<PlaneVariable>({unit(rng), {1, 2, 3}, -4}, 3, 1, retract, local, rng);
+  const auto local = [](const PlaneVariable& a, const PlaneVariable& b) -> Eigen::VectorXd {
+    return a.local(b);
+  };
+  for (const Eigen::Vector3d& n : special_normals)
+    expect_manifold<PlaneVariable>({n, {1, 2, 3}, 0.2}, 3, 1, retract, local, rng);
+  for (int i = 0; i < 20; ++i)
+    expect_manifold<PlaneVariable>({unit(rng), {1, 2, 3}, -4}, 3, 1, retract, local, rng);
 }
 
 TEST(PoseVariable, IsAManifold) {
@@ -77,9 +86,12 @@ TEST(PlaneVariable, SignedDistanceHasTheExpectedDerivative) {
   const Eigen::Vector3d x(2, 1, 4);
   Eigen::RowVector3d jacobian;
   jacobian << (x - p.anchor).transpose() * tangent_basis(p.normal), 1;
-  expect_jacobian(jacobian, [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
-    return Eigen::VectorXd::Constant(1, p.retract(d).signed_distance(x));
-  }, 1e-8, 1e-3);
+  expect_jacobian(
+      jacobian,
+      [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+        return Eigen::VectorXd::Constant(1, p.retract(d).signed_distance(x));
+      },
+      1e-8, 1e-3);
 }
 
 }  // namespace

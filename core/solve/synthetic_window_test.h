@@ -14,8 +14,8 @@ namespace vsgraphs {
 struct SyntheticWindowOptions {
   int fixed_poses = 10, free_poses = 20, landmarks = 3000, views_per_landmark = 5;
   double pixel_sigma = 1.0;
-  double depth_share = 0.7;      // observations with a depth reading
-  double outlier_share = 0.0;    // observations moved by 30 to 80 px
+  double depth_share = 0.7;    // observations with a depth reading
+  double outlier_share = 0.0;  // observations moved by 30 to 80 px
   double pose_error_m = 0.02, pose_error_rad = 0.01, landmark_error_m = 0.03;  // of the start
   bool noise = true;
 };
@@ -80,7 +80,8 @@ inline SyntheticWindow synthetic_window(const SyntheticWindowOptions& options, s
     const int first = static_cast<int>(rng.index(static_cast<std::uint32_t>(poses - views + 1)));
     const Se3& middle = w.true_poses[first + views / 2];
     const Eigen::Vector3d point =
-        middle * problem.intrinsics.unproject(rng.uniform(80, 560), rng.uniform(60, 420), rng.uniform(1.5, 4));
+        middle *
+        problem.intrinsics.unproject(rng.uniform(80, 560), rng.uniform(60, 420), rng.uniform(1.5, 4));
     w.true_landmarks.push_back(point);
     problem.landmarks.push_back(point + options.landmark_error_m *
                                             Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()));

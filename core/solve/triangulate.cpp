@@ -63,8 +63,10 @@ bool add_rows(const Intrinsics& k, const ViewOfPoint& view, const Eigen::Vector3
 
 std::optional<Eigen::Vector3d> triangulate(const Intrinsics& intrinsics, std::span<const ViewOfPoint> views,
                                            const TriangulationOptions& options) {
-  const bool depth = std::any_of(views.begin(), views.end(), [](const auto& v) { return v.measurement.has_depth(); });
-  if (!depth && (views.size() < 2 || !(largest_parallax(intrinsics, views) >= options.min_parallax_rad))) return {};
+  const bool depth =
+      std::any_of(views.begin(), views.end(), [](const auto& v) { return v.measurement.has_depth(); });
+  if (!depth && (views.size() < 2 || !(largest_parallax(intrinsics, views) >= options.min_parallax_rad)))
+    return {};
   std::optional<Eigen::Vector3d> point = linear(intrinsics, views);
   if (!point) return {};
   for (int step = 0; step < options.refinement_steps; ++step) {
@@ -86,14 +88,18 @@ std::optional<Eigen::Vector3d> triangulate(const Intrinsics& intrinsics, std::sp
   return point;
 }
 
-double parallax_angle(const Eigen::Vector3d& point, const Eigen::Vector3d& centre_a, const Eigen::Vector3d& centre_b) {
+double parallax_angle(const Eigen::Vector3d& point, const Eigen::Vector3d& centre_a,
+                      const Eigen::Vector3d& centre_b) {
   const Eigen::Vector3d a = centre_a - point, b = centre_b - point;
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-std::optional<ReprojectionError> reprojection_error(const Intrinsics& intrinsics, const Se3& world_from_camera,
-                                                    const Eigen::Vector3d& point, const ReprojectionMeasurement& m) {
-  const Eigen::Vector3d p = world_from_camera.rotation().transpose() * (point - world_from_camera.translation());
+std::optional<ReprojectionError> reprojection_error(const Intrinsics& intrinsics,
+                                                    const Se3& world_from_camera,
+                                                    const Eigen::Vector3d& point,
+                                                    const ReprojectionMeasurement& m) {
+  const Eigen::Vector3d p =
+      world_from_camera.rotation().transpose() * (point - world_from_camera.translation());
   if (!(p.z() >= min_projection_depth_m)) return {};
   const Eigen::Vector2d error = (intrinsics.project(p) - Eigen::Vector2d(m.u, m.v)) * m.inv_sigma_px;
   const double depth = m.has_depth() ? (1.0 / p.z() - m.inverse_depth) * m.inv_sigma_inverse_depth : 0.0;

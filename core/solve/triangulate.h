@@ -18,7 +18,8 @@ struct ViewOfPoint {
 };
 
 struct TriangulationOptions {
-  double min_parallax_rad = 0.0175;  // largest angle between two rays, 1 deg; not asked where there is a depth reading
+  double min_parallax_rad =
+      0.0175;  // largest angle between two rays, 1 deg; not asked where there is a depth reading
   int refinement_steps = 2;
 };
 
@@ -28,13 +29,16 @@ std::optional<Eigen::Vector3d> triangulate(const Intrinsics& intrinsics, std::sp
                                            const TriangulationOptions& options = {});
 
 // Angle at the point between the rays to two camera centres, rad.
-double parallax_angle(const Eigen::Vector3d& point, const Eigen::Vector3d& centre_a, const Eigen::Vector3d& centre_b);
+double parallax_angle(const Eigen::Vector3d& point, const Eigen::Vector3d& centre_a,
+                      const Eigen::Vector3d& centre_b);
 
 // Squared whitened pixel error and inverse-depth error (0 without reading) of a point in a view; nothing behind it.
 struct ReprojectionError {
   double chi2_px = 0, chi2_depth = 0;
 };
-std::optional<ReprojectionError> reprojection_error(const Intrinsics& intrinsics, const Se3& world_from_camera,
-                                                    const Eigen::Vector3d& point, const ReprojectionMeasurement& m);
+std::optional<ReprojectionError> reprojection_error(const Intrinsics& intrinsics,
+                                                    const Se3& world_from_camera,
+                                                    const Eigen::Vector3d& point,
+                                                    const ReprojectionMeasurement& m);
 
 }  // namespace vsgraphs

@@ -13,7 +13,8 @@ namespace {
 const Intrinsics intrinsics;
 const Eigen::Vector3d target(0.4, -0.3, 3.0);
 
-ViewOfPoint view_from(const Eigen::Vector3d& centre, const Eigen::Vector3d& point, bool depth, Rng* rng = nullptr) {
+ViewOfPoint view_from(const Eigen::Vector3d& centre, const Eigen::Vector3d& point, bool depth,
+                      Rng* rng = nullptr) {
   ViewOfPoint view;
   view.world_from_camera = Se3(so3_exp({0.02, -0.1 * centre.x(), 0.01}), centre);
   const Eigen::Vector3d p = view.world_from_camera.inverse() * point;
@@ -43,7 +44,8 @@ TEST(Triangulate, ErrorUnderNoiseIsThatOfTheOptimum) {
   none.refinement_steps = 0;
   for (int i = 0; i < 400; ++i) {
     std::vector<ViewOfPoint> views;
-    for (double x : {0.0, 0.15, 0.3, 0.45}) views.push_back(view_from({x, 0.05 * x, 0.8 * x}, target, false, &rng));
+    for (double x : {0.0, 0.15, 0.3, 0.45})
+      views.push_back(view_from({x, 0.05 * x, 0.8 * x}, target, false, &rng));
     const auto a = triangulate(intrinsics, views, none), b = triangulate(intrinsics, views);
     views.push_back(view_from({0.2, 0.1, 0}, target, true, &rng));
     const auto c = triangulate(intrinsics, views);

@@ -44,7 +44,8 @@ void gather_fixed(const Map& map, Window& window, int max_fixed) {
   std::sort(witnesses.begin(), witnesses.end(), [&shared](KeyframeId a, KeyframeId b) {
     return shared[a.index] != shared[b.index] ? shared[a.index] > shared[b.index] : a < b;
   });
-  if (witnesses.size() > static_cast<std::size_t>(max_fixed)) witnesses.resize(static_cast<std::size_t>(max_fixed));
+  if (witnesses.size() > static_cast<std::size_t>(max_fixed))
+    witnesses.resize(static_cast<std::size_t>(max_fixed));
   window.fixed = std::move(witnesses);
 }
 
@@ -60,7 +61,8 @@ void add_linked(const Map& map, Window& window, int max_free) {
   }
 }
 
-ReprojectionObservation measure(const MeasurementModel& model, const Feature& feature, int pose, int landmark) {
+ReprojectionObservation measure(const MeasurementModel& model, const Feature& feature, int pose,
+                                int landmark) {
   ReprojectionObservation o;
   o.pose = pose;
   o.landmark = landmark;
@@ -106,7 +108,8 @@ void build_tracked_links(const Map& map, const Window&, const MeasurementModel&,
     const auto to = map.reanchor({link->to, link->to_from_camera});
     const int other = to ? pose_of[to->keyframe.index] : -1;
     if (other < 0 || other == static_cast<int>(i)) continue;
-    const bool both_fixed = problem.bundle.pose_fixed[i] && problem.bundle.pose_fixed[static_cast<std::size_t>(other)];
+    const bool both_fixed =
+        problem.bundle.pose_fixed[i] && problem.bundle.pose_fixed[static_cast<std::size_t>(other)];
     if (both_fixed) continue;
     constexpr double huber_sigmas = 3.5;  // 95 % of a chi with six degrees of freedom
     problem.bundle.factors.push_back(std::make_unique<RelativePose>(
@@ -153,7 +156,8 @@ WindowProblem build_problem(const Map& map, const Window& window, const Measurem
   return problem;
 }
 
-void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report, Draft& draft) {
+void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report,
+                    Draft& draft) {
   const BundleProblem& bundle = problem.bundle;
   for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
     if (is_inlier(report.fit[i])) continue;

@@ -12,10 +12,10 @@
 namespace vsgraphs {
 
 struct Window {
-  std::vector<KeyframeId> free;         // poses to improve
-  std::vector<KeyframeId> fixed;        // poses that hold the rest in place
-  std::vector<LandmarkId> landmarks;    // seen by at least two keyframes of the window
-  std::vector<LandmarkId> passengers;   // seen by one free keyframe alone: they move with it
+  std::vector<KeyframeId> free;        // poses to improve
+  std::vector<KeyframeId> fixed;       // poses that hold the rest in place
+  std::vector<LandmarkId> landmarks;   // seen by at least two keyframes of the window
+  std::vector<LandmarkId> passengers;  // seen by one free keyframe alone: they move with it
 };
 
 // The keyframes covisible with `centre` (most shared landmarks first), up to the given numbers. Without any
@@ -41,6 +41,7 @@ WindowProblem build_problem(const Map& map, const Window& window, const Measurem
 
 // Records the solution in `draft`: moved poses, landmarks and passengers, and removes the observations that
 // `report` calls outliers.
-void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report, Draft& draft);
+void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report,
+                    Draft& draft);
 
 }  // namespace vsgraphs

@@ -17,7 +17,8 @@ void Probation::judge(const CullingOptions& options, std::int64_t keyframe_count
     const auto observations = static_cast<int>(landmark->observations.size());
     const bool seldom_found = landmark->found_count < options.min_found_share * landmark->visible_count;
     // The demand grows with age: a landmark has had that many chances to be seen by a keyframe.
-    const bool thinly_observed = age >= options.probation_keyframes - 1 && observations < options.min_observations;
+    const bool thinly_observed =
+        age >= options.probation_keyframes - 1 && observations < options.min_observations;
     if (seldom_found || thinly_observed || observations == 0) {
       draft.record(RemoveLandmark{entry.landmark});
     } else if (age < options.probation_keyframes) {
@@ -30,13 +31,14 @@ void Probation::judge(const CullingOptions& options, std::int64_t keyframe_count
 namespace {
 
 // Others that see the landmark at the same or a finer scale.
-bool well_witnessed(const CullingOptions& options, const Map& map, const Landmark& landmark, KeyframeId keyframe,
-                    int level) {
+bool well_witnessed(const CullingOptions& options, const Map& map, const Landmark& landmark,
+                    KeyframeId keyframe, int level) {
   int witnesses = 0;
   for (const Observation& o : landmark.observations) {
     if (o.keyframe == keyframe) continue;
     const Keyframe* other = map.keyframes().find(o.keyframe);
-    if (other && (*other->features)[o.feature].level <= level + 1 && ++witnesses >= options.redundant_witnesses) {
+    if (other && (*other->features)[o.feature].level <= level + 1 &&
+        ++witnesses >= options.redundant_witnesses) {
       return true;
     }
   }

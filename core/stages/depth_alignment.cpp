@@ -51,7 +51,8 @@ std::vector<PointToPlane> DepthAligner::associate(const DepthGrid& now, const Su
 }
 
 // Agreement is judged at full weight; the information is that of correlated samples.
-void DepthAligner::count(const std::vector<PointToPlane>& rows, const Se3& pose, DepthAlignment& result) const {
+void DepthAligner::count(const std::vector<PointToPlane>& rows, const Se3& pose,
+                         DepthAlignment& result) const {
   constexpr double agreeing_sigmas = 3.0;
   result.associated = static_cast<int>(rows.size());
   for (const PointToPlane& row : rows) {
@@ -72,24 +73,26 @@ DepthAlignment DepthAligner::judge(const DepthGrid& now, const SurfaceReference&
   return result;
 }
 
-DepthAlignment DepthAligner::align(const DepthGrid& now, const SurfaceReference& reference, const Se3& initial,
-                                   std::span<const PoseObservation> features, const PosePriorTerm& prior) const {
+DepthAlignment DepthAligner::align(const DepthGrid& now, const SurfaceReference& reference,
+                                   const Se3& initial, std::span<const PoseObservation> features,
+                                   const PosePriorTerm& prior) const {
   constexpr int iterations = 8;
   constexpr double first_gate_m = 0.4, last_gate_m = 0.08;
   DepthAlignment result;
   Se3 pose = initial;
   std::vector<PointToPlane> rows;
   for (int i = 0; i < iterations; ++i) {
-    const double gate = first_gate_m * std::pow(last_gate_m / first_gate_m, static_cast<double>(i) / (iterations - 1));
+    const double gate =
+        first_gate_m * std::pow(last_gate_m / first_gate_m, static_cast<double>(i) / (iterations - 1));
     rows = associate(now, reference, pose, gate);
-    const double weight = std::sqrt(std::min(1.0, effective_samples / std::max<double>(1.0, static_cast<double>(rows.size()))));
+    const double weight =
+        std::sqrt(std::min(1.0, effective_samples / std::max<double>(1.0, static_cast<double>(rows.size()))));
     std::vector<PointToPlane> weighted = rows;
     for (PointToPlane& row : weighted) row.inv_sigma *= weight;
     PoseSolverOptions options;
     options.rounds = i + 1 < iterations ? 1 : 2;
     options.iterations_per_round = 4;
-    result.solution =
-        solve_pose(Intrinsics::of(camera_), pose, features, weighted, prior, options);
+    result.solution = solve_pose(Intrinsics::of(camera_), pose, features, weighted, prior, options);
     pose = result.solution.world_from_camera;
   }
   count(rows, pose, result);

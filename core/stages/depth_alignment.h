@@ -26,7 +26,8 @@ struct DepthAlignment {
   PoseSolution solution;
   int associated = 0;  // samples that met a surface of the reference
   int agreeing = 0;    // of them, on it within noise
-  Matrix6d surface_information = Matrix6d::Zero();  // of the agreeing samples alone, right-hand tangent of the pose
+  Matrix6d surface_information =
+      Matrix6d::Zero();      // of the agreeing samples alone, right-hand tangent of the pose
   bool convincing() const;   // enough samples, most of which agree
   bool contradicts() const;  // enough samples, too many of which disagree
 };
@@ -43,11 +44,12 @@ class DepthAligner {
 
   // How well the frame's surfaces fit the reference's at a given pose; nothing is solved. For judging a pose that
   // was found in another way.
-  DepthAlignment judge(const DepthGrid& now, const SurfaceReference& reference, const Se3& world_from_camera) const;
+  DepthAlignment judge(const DepthGrid& now, const SurfaceReference& reference,
+                       const Se3& world_from_camera) const;
 
  private:
-  std::vector<PointToPlane> associate(const DepthGrid& now, const SurfaceReference& reference, const Se3& pose,
-                                      double gate_m) const;
+  std::vector<PointToPlane> associate(const DepthGrid& now, const SurfaceReference& reference,
+                                      const Se3& pose, double gate_m) const;
   void count(const std::vector<PointToPlane>& rows, const Se3& pose, DepthAlignment& result) const;
 
   Camera camera_;

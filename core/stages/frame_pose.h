@@ -43,9 +43,9 @@ class FrameMatches {
 struct FramePose {
   Se3 world_from_camera;
   int inliers = 0;
-  bool trustworthy = false;  // solved, and the six directions are all held by measurements
+  bool trustworthy = false;                 // solved, and the six directions are all held by measurements
   Matrix6d information = Matrix6d::Zero();  // of the measurements, tangent on the right of the pose
-  bool degenerate = false;   // part of the pose is only what the motion model predicted
+  bool degenerate = false;                  // part of the pose is only what the motion model predicted
 };
 
 // Weights of one feature's measurements, from the level it was found at and the sensor's depth noise.

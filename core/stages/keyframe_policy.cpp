@@ -4,11 +4,13 @@ namespace vsgraphs {
 
 bool keyframe_wanted(const KeyframePolicyOptions& o, const KeyframeEvidence& e) {
   if (e.held_by_surfaces) {
-    return e.backlog < 3 && (e.translation_m >= o.surface_translation_m || e.rotation_rad >= o.surface_rotation_rad);
+    return e.backlog < 3 &&
+           (e.translation_m >= o.surface_translation_m || e.rotation_rad >= o.surface_rotation_rad);
   }
   const bool moved = e.translation_m >= o.min_translation_m || e.rotation_rad >= o.min_rotation_rad;
   if (!moved) return false;
-  const double share = e.reference_landmarks > 0 ? static_cast<double>(e.tracked) / e.reference_landmarks : 0.0;
+  const double share =
+      e.reference_landmarks > 0 ? static_cast<double>(e.tracked) / e.reference_landmarks : 0.0;
   const bool weak = share < 0.5 * o.min_tracked_share || e.tracked < 50;
   // A busy mapper is only interrupted by need.
   if (e.backlog >= 3) return false;

@@ -29,7 +29,8 @@ void describe(KeyframePolicyOptions& o, Visitor& field) {
         "where surfaces hold the pose instead of landmarks: distance between keyframes");
   field("surface_rotation_rad", o.surface_rotation_rad, 0.0, 3.2,
         "where surfaces hold the pose instead of landmarks: turn between keyframes");
-  field("max_interval_s", o.max_interval_s, 0.1, 60.0, "a moving camera makes a keyframe at least this often");
+  field("max_interval_s", o.max_interval_s, 0.1, 60.0,
+        "a moving camera makes a keyframe at least this often");
   field("few_close_points", o.few_close_points, 0, 1000,
         "fewer tracked points with depth than this count as too few, if many new ones are to be had");
   field("many_new_close_points", o.many_new_close_points, 0, 1000, "how many new points with depth are many");
@@ -43,7 +44,7 @@ struct KeyframeEvidence {
   double seconds_since_last = 0;  // since the last keyframe was requested
   double translation_m = 0;       // from the last keyframe requested
   double rotation_rad = 0;
-  int backlog = 0;  // keyframes waiting for the mapper
+  int backlog = 0;                // keyframes waiting for the mapper
   bool held_by_surfaces = false;  // landmarks are few, depth was aligned with a keyframe's
 };
 

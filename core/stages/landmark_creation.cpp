@@ -44,7 +44,8 @@ Eigen::Matrix3d fundamental(const Camera& camera, const Se3& b_from_a) {
   return k_inverse.transpose() * skew(b_from_a.translation()) * b_from_a.rotation() * k_inverse;
 }
 
-ViewOfPoint view_of(const Camera& camera, const ScalePyramid& pyramid, const Keyframe& keyframe, int feature) {
+ViewOfPoint view_of(const Camera& camera, const ScalePyramid& pyramid, const Keyframe& keyframe,
+                    int feature) {
   const Feature& f = (*keyframe.features)[feature];
   ViewOfPoint view;
   view.world_from_camera = keyframe.world_from_camera;
@@ -74,8 +75,9 @@ std::vector<LandmarkId> create_from_depth(const Camera& camera, KeyframeId id, D
   return made;
 }
 
-std::vector<LandmarkId> create_by_triangulation(const Camera& camera, const ScalePyramid& pyramid, KeyframeId id,
-                                                const std::vector<KeyframeId>& neighbours, Draft& draft) {
+std::vector<LandmarkId> create_by_triangulation(const Camera& camera, const ScalePyramid& pyramid,
+                                                KeyframeId id, const std::vector<KeyframeId>& neighbours,
+                                                Draft& draft) {
   constexpr double min_baseline_m = 0.03;
   std::vector<LandmarkId> made;
   for (const KeyframeId neighbour_id : neighbours) {
@@ -90,16 +92,16 @@ std::vector<LandmarkId> create_by_triangulation(const Camera& camera, const Scal
     options.ratio = 0.9;
     options.check_rotation = true;
     constexpr double max_sigmas = 2.0;
-    for (const auto& [i, j] : match_epipolar(*keyframe.features, open, *neighbour.features, open_there,
-                                             fundamental(camera, neighbour_from_keyframe), pyramid, max_sigmas,
-                                             options)) {
+    for (const auto& [i, j] :
+         match_epipolar(*keyframe.features, open, *neighbour.features, open_there,
+                        fundamental(camera, neighbour_from_keyframe), pyramid, max_sigmas, options)) {
       const std::array<ViewOfPoint, 2> views{view_of(camera, pyramid, keyframe, i),
                                              view_of(camera, pyramid, neighbour, j)};
       const auto point = triangulate(Intrinsics::of(camera), views);
       if (!point) continue;
-      made.push_back(add_landmark(*point, keyframe.frame_index,
-                                  {{id, static_cast<std::uint16_t>(i)}, {neighbour_id, static_cast<std::uint16_t>(j)}},
-                                  draft));
+      made.push_back(add_landmark(
+          *point, keyframe.frame_index,
+          {{id, static_cast<std::uint16_t>(i)}, {neighbour_id, static_cast<std::uint16_t>(j)}}, draft));
     }
   }
   return made;

@@ -15,7 +15,7 @@ std::vector<LandmarkId> create_from_depth(const Camera& camera, KeyframeId keyfr
 // Landmarks for features without depth that match a neighbour's along the epipolar line and triangulate well
 // (parallax at least 1 deg, reprojection within the 95 % gate in both views).
 std::vector<LandmarkId> create_by_triangulation(const Camera& camera, const ScalePyramid& pyramid,
-                                                KeyframeId keyframe, const std::vector<KeyframeId>& neighbours,
-                                                Draft& draft);
+                                                KeyframeId keyframe,
+                                                const std::vector<KeyframeId>& neighbours, Draft& draft);
 
 }  // namespace vsgraphs

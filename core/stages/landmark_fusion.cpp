@@ -26,8 +26,9 @@ struct Sight {
 };
 
 // Which of `candidates` the keyframe's features show; `taken` features are passed over.
-std::vector<Sight> look_for(const Camera& camera, const ScalePyramid& pyramid, const Map& map, const Keyframe& keyframe,
-                            const std::vector<LandmarkId>& candidates, std::span<const std::uint8_t> taken) {
+std::vector<Sight> look_for(const Camera& camera, const ScalePyramid& pyramid, const Map& map,
+                            const Keyframe& keyframe, const std::vector<LandmarkId>& candidates,
+                            std::span<const std::uint8_t> taken) {
   const Se3 camera_from_world = keyframe.world_from_camera.inverse();
   std::vector<ProjectedPoint> projections;
   std::vector<LandmarkId> ids;
@@ -63,7 +64,8 @@ bool observes(const Landmark& landmark, KeyframeId keyframe) {
 
 void merge_or_observe(const Sight& sight, KeyframeId keyframe, Draft& draft) {
   const Map& map = draft.map();
-  const LandmarkId present = map.keyframes().find(keyframe)->landmarks[static_cast<std::size_t>(sight.feature)];
+  const LandmarkId present =
+      map.keyframes().find(keyframe)->landmarks[static_cast<std::size_t>(sight.feature)];
   const Landmark* landmark = map.landmarks().find(sight.landmark);
   if (!landmark || present == sight.landmark || observes(*landmark, keyframe)) return;
   if (!present.valid()) {
@@ -72,7 +74,8 @@ void merge_or_observe(const Sight& sight, KeyframeId keyframe, Draft& draft) {
   }
   const Landmark& other = *map.landmarks().find(present);
   const bool keep_present = other.observations.size() >= landmark->observations.size();
-  draft.record(keep_present ? MergeLandmark{sight.landmark, present} : MergeLandmark{present, sight.landmark});
+  draft.record(keep_present ? MergeLandmark{sight.landmark, present}
+                            : MergeLandmark{present, sight.landmark});
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ bool project_landmark(const Camera& camera, const ScalePyramid& pyramid, const S
   const Appearance& appearance = landmark.appearance;
   const double distance = p.norm();
   // The angle between rays is the same in both frames, so the stored direction is turned, not the point.
-  const double cosine = p.dot(camera_from_world.rotation() * appearance.view_direction.cast<double>()) / distance;
+  const double cosine =
+      p.dot(camera_from_world.rotation() * appearance.view_direction.cast<double>()) / distance;
   if (cosine < 0.5) return false;
   const int level =
       pyramid.predict_level(distance, appearance.reference_distance_m, appearance.reference_level);
@@ -38,7 +39,8 @@ bool project_landmark(const Camera& camera, const ScalePyramid& pyramid, const S
   return true;
 }
 
-void LocalMap::select(const Map& map, std::span<const LandmarkId> seen, KeyframeId fallback, int max_keyframes) {
+void LocalMap::select(const Map& map, std::span<const LandmarkId> seen, KeyframeId fallback,
+                      int max_keyframes) {
   keyframes_.clear();
   vote(map, seen);
   std::sort(voters_.begin(), voters_.end(), [this](KeyframeId a, KeyframeId b) {
@@ -47,7 +49,8 @@ void LocalMap::select(const Map& map, std::span<const LandmarkId> seen, Keyframe
   if (voters_.empty() && map.keyframes().contains(fallback)) voters_.push_back(fallback);
   reference_ = voters_.empty() ? KeyframeId{} : voters_.front();
   const auto limit = static_cast<std::size_t>(max_keyframes);
-  keyframes_.assign(voters_.begin(), voters_.begin() + static_cast<std::ptrdiff_t>(std::min(limit, voters_.size())));
+  keyframes_.assign(voters_.begin(),
+                    voters_.begin() + static_cast<std::ptrdiff_t>(std::min(limit, voters_.size())));
   if (keyframes_.size() < limit) add_neighbours(map, limit);
   gather_landmarks(map);
 }

@@ -7,7 +7,10 @@
 namespace vsgraphs {
 
 LocalMapper::LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid)
-    : options_(options), camera_(camera), pyramid_(pyramid), model_{camera, pyramid.factor, options.sigma_px} {}
+    : options_(options),
+      camera_(camera),
+      pyramid_(pyramid),
+      model_{camera, pyramid.factor, options.sigma_px} {}
 
 MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& id,
                             TraceSink* trace) {
@@ -39,7 +42,8 @@ MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snap
   made.insert(made.end(), from_depth.begin(), from_depth.end());
   probation_.admit(made, keyframe_count_);
   if (!request.first) {
-    fuse_into_neighbours(camera_, pyramid_, id, neighbours_of(draft.map(), id, options_.fusion_neighbours), draft);
+    fuse_into_neighbours(camera_, pyramid_, id, neighbours_of(draft.map(), id, options_.fusion_neighbours),
+                         draft);
     refresh_appearance(id, draft);
   }
   return draft.take();
@@ -83,7 +87,8 @@ void LocalMapper::refresh_appearance(KeyframeId keyframe, Draft& draft) const {
 MapEdit LocalMapper::refine(KeyframeId keyframe, const Snapshot& snapshot, const std::function<bool()>& stop,
                             SolveReport& report, TraceSink* trace) {
   Draft draft(snapshot);
-  const Window window = select_window(draft.map(), keyframe, options_.window_keyframes, options_.window_witnesses);
+  const Window window =
+      select_window(draft.map(), keyframe, options_.window_keyframes, options_.window_witnesses);
   if (draft.map().keyframes().size() > 1) {
     const Span span(trace, "local_adjustment");
     WindowProblem problem = build_problem(draft.map(), window, model_);

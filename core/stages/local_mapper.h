@@ -28,11 +28,13 @@ struct LocalMapperOptions {
 
 template <typename Visitor>
 void describe(LocalMapperOptions& o, Visitor& field) {
-  field("fusion_neighbours", o.fusion_neighbours, 1, 50, "keyframes in which duplicates of new landmarks are sought");
+  field("fusion_neighbours", o.fusion_neighbours, 1, 50,
+        "keyframes in which duplicates of new landmarks are sought");
   field("triangulation_neighbours", o.triangulation_neighbours, 0, 50,
         "keyframes with which features without depth are triangulated");
   field("window_keyframes", o.window_keyframes, 2, 200, "keyframes that one local adjustment moves");
-  field("window_witnesses", o.window_witnesses, 1, 200, "fixed keyframes that hold a local adjustment in place");
+  field("window_witnesses", o.window_witnesses, 1, 200,
+        "fixed keyframes that hold a local adjustment in place");
   field("iterations_before_dropping", o.iterations_before_dropping, 0, 50,
         "iterations of a local adjustment before outliers are dropped");
   field("iterations", o.iterations, 1, 50, "iterations of a local adjustment after that");
@@ -44,7 +46,8 @@ class LocalMapper {
   LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid);
 
   // Adds the requested keyframe with its observations and new landmarks. `keyframe` receives its id.
-  MapEdit insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& keyframe, TraceSink* trace);
+  MapEdit insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& keyframe,
+                 TraceSink* trace);
 
   // Adjusts the window around `keyframe` and culls. `stop` is asked between iterations; the number of iterations
   // done goes to `report`.

@@ -57,9 +57,9 @@ struct TrackedFrame {
   std::int64_t index = 0;
   double timestamp_s = 0;
   TrackStatus status = TrackStatus::waiting;
-  AnchoredPose pose;      // valid if has_pose(status), but for the first frame, whose keyframe is yet to be made
-  Se3 world_from_camera;  // the same in the snapshot's world
-  int matches = 0;        // inlier correspondences behind the pose
+  AnchoredPose pose;  // valid if has_pose(status), but for the first frame, whose keyframe is yet to be made
+  Se3 world_from_camera;                                    // the same in the snapshot's world
+  int matches = 0;                                          // inlier correspondences behind the pose
   std::shared_ptr<const KeyframeRequest> keyframe_request;  // set if the frame should become a keyframe
 };
 

@@ -7,16 +7,18 @@
 
 namespace vsgraphs {
 
-std::optional<FramePose> Recovery::from_recent(const Map& map, const FeatureSet& now, std::int64_t frame_index,
-                                               const FeatureSet& last, std::span<const LandmarkId> last_landmarks,
+std::optional<FramePose> Recovery::from_recent(const Map& map, const FeatureSet& now,
+                                               std::int64_t frame_index, const FeatureSet& last,
+                                               std::span<const LandmarkId> last_landmarks,
                                                const Se3& world_from_last, KeyframeId keyframe_id,
                                                FrameMatches& matches) {
-  auto best = align(map, {&last, last_landmarks, world_from_last}, now, frame_index, options_.min_inliers, matches);
+  auto best =
+      align(map, {&last, last_landmarks, world_from_last}, now, frame_index, options_.min_inliers, matches);
   const Keyframe* keyframe = map.keyframes().find(keyframe_id);
   if (!keyframe) return best;
   FrameMatches other_matches;
-  const auto other = align(map, {keyframe->features.get(), keyframe->landmarks, keyframe->world_from_camera}, now,
-                           frame_index, options_.min_inliers, other_matches);
+  const auto other = align(map, {keyframe->features.get(), keyframe->landmarks, keyframe->world_from_camera},
+                           now, frame_index, options_.min_inliers, other_matches);
   if (other && (!best || other->inliers > best->inliers)) {
     matches = std::move(other_matches);
     return other;
@@ -24,8 +26,8 @@ std::optional<FramePose> Recovery::from_recent(const Map& map, const FeatureSet&
   return best;
 }
 
-std::optional<FramePose> Recovery::from_anywhere(const Map& map, const FeatureSet& now, std::int64_t frame_index,
-                                                 FrameMatches& matches) {
+std::optional<FramePose> Recovery::from_anywhere(const Map& map, const FeatureSet& now,
+                                                 std::int64_t frame_index, FrameMatches& matches) {
   std::vector<KeyframeId> keyframes;
   std::vector<Place> places;
   map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
@@ -36,15 +38,16 @@ std::optional<FramePose> Recovery::from_anywhere(const Map& map, const FeatureSe
   place_options.max_candidates = options_.max_candidates;
   for (const PlaceCandidate& candidate : find_place_candidates(now, places, place_options)) {
     const Keyframe& keyframe = *map.keyframes().find(keyframes[static_cast<std::size_t>(candidate.id)]);
-    const auto pose = align(map, {keyframe.features.get(), keyframe.landmarks, keyframe.world_from_camera}, now,
-                            frame_index, options_.min_relocalisation_inliers, matches);
+    const auto pose = align(map, {keyframe.features.get(), keyframe.landmarks, keyframe.world_from_camera},
+                            now, frame_index, options_.min_relocalisation_inliers, matches);
     if (pose) return pose;
   }
   return std::nullopt;
 }
 
 std::optional<FramePose> Recovery::align(const Map& map, const Source& source, const FeatureSet& now,
-                                         std::int64_t frame_index, int min_inliers, FrameMatches& matches) const {
+                                         std::int64_t frame_index, int min_inliers,
+                                         FrameMatches& matches) const {
   matches.reset(now.size());
   MatchOptions options;
   options.max_distance = 64;
@@ -57,17 +60,18 @@ std::optional<FramePose> Recovery::align(const Map& map, const Source& source, c
     const Landmark* landmark = map.landmarks().find(id);
     const Feature& feature = (*source.features)[there];
     if (!landmark && !feature.has_depth()) continue;
-    const Eigen::Vector3d point = landmark ? landmark->point_in_world
-                                           : source.world_from_camera * camera_.unproject(feature.u, feature.v,
-                                                                                          feature.depth_m);
+    const Eigen::Vector3d point =
+        landmark ? landmark->point_in_world
+                 : source.world_from_camera * camera_.unproject(feature.u, feature.v, feature.depth_m);
     candidates.push_back({here, landmark ? id : LandmarkId{}, point});
     observations.push_back(pose_observation(camera_, pyramid_, now[here], point));
   }
   if (static_cast<int>(candidates.size()) < min_inliers) return std::nullopt;
   AlignMatchesOptions align_options;
   align_options.min_inliers = min_inliers;
-  const auto aligned = align_matches(Intrinsics::of(camera_), observations,
-                                     Rng(seed_, "recovery", static_cast<std::uint64_t>(frame_index)), align_options);
+  const auto aligned =
+      align_matches(Intrinsics::of(camera_), observations,
+                    Rng(seed_, "recovery", static_cast<std::uint64_t>(frame_index)), align_options);
   if (!aligned || aligned->degenerate) return std::nullopt;
   for (const Correspondence& c : candidates) matches.add(c);
   std::vector<std::uint8_t> inlier(candidates.size());

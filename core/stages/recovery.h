@@ -29,13 +29,15 @@ void describe(RecoveryOptions& o, Visitor& field) {
 
 class Recovery {
  public:
-  Recovery(const RecoveryOptions& options, const Camera& camera, const ScalePyramid& pyramid, std::uint64_t seed)
+  Recovery(const RecoveryOptions& options, const Camera& camera, const ScalePyramid& pyramid,
+           std::uint64_t seed)
       : options_(options), camera_(camera), pyramid_(pyramid), seed_(seed) {}
 
   // Against the last frame (its landmarks and depth) and a keyframe; the better one wins. Fills `matches`.
   std::optional<FramePose> from_recent(const Map& map, const FeatureSet& now, std::int64_t frame_index,
                                        const FeatureSet& last, std::span<const LandmarkId> last_landmarks,
-                                       const Se3& world_from_last, KeyframeId keyframe, FrameMatches& matches);
+                                       const Se3& world_from_last, KeyframeId keyframe,
+                                       FrameMatches& matches);
 
   // Against the keyframes that look most like the frame. Cost: about 50 us per keyframe of the map, plus a
   // few ms per candidate.

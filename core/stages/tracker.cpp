@@ -9,17 +9,24 @@ namespace vsgraphs {
 
 const char* to_string(TrackStatus status) {
   switch (status) {
-    case TrackStatus::waiting: return "waiting";
-    case TrackStatus::initialised: return "initialised";
-    case TrackStatus::ok: return "ok";
-    case TrackStatus::coasting: return "coasting";
-    case TrackStatus::lost: return "lost";
-    case TrackStatus::relocalised: return "relocalised";
+    case TrackStatus::waiting:
+      return "waiting";
+    case TrackStatus::initialised:
+      return "initialised";
+    case TrackStatus::ok:
+      return "ok";
+    case TrackStatus::coasting:
+      return "coasting";
+    case TrackStatus::lost:
+      return "lost";
+    case TrackStatus::relocalised:
+      return "relocalised";
   }
   return "unknown";
 }
 
-Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Camera& camera, std::uint64_t seed)
+Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Camera& camera,
+                 std::uint64_t seed)
     : options_(options),
       camera_(camera),
       pyramid_{orb.levels, orb.scale_factor},
@@ -106,7 +113,8 @@ void Tracker::adopt_landmarks_of_own_keyframe(const Map& map) {
 
 // A search that is too narrow for the step finds coincidences, so a poor result is not the end: wider searches and
 // matching without prediction are tried, and the pose that explains most matches wins.
-std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predicted, bool& guessed, TraceSink* trace) {
+std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predicted, bool& guessed,
+                                               TraceSink* trace) {
   constexpr int plenty = 50;
   std::optional<FramePose> best;
   FrameMatches best_matches;
@@ -119,7 +127,8 @@ std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predic
   if (!lost_) {
     const Span span(trace, "match_motion");
     for (const double widening : {1.0, 2.5}) {
-      const double share = match_last_frame(map, predicted, widening * options_.search_radius_px, keep_if_better);
+      const double share =
+          match_last_frame(map, predicted, widening * options_.search_radius_px, keep_if_better);
       if (best && best->inliers >= plenty && share >= 0.6) break;
     }
   }
@@ -134,8 +143,9 @@ std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predic
 }
 
 // Returns the share of the matches that the pose found explains.
-double Tracker::match_last_frame(const Map& map, const Se3& predicted, double radius_px,
-                                 const std::function<void(const std::optional<FramePose>&, bool)>& found_pose) {
+double Tracker::match_last_frame(
+    const Map& map, const Se3& predicted, double radius_px,
+    const std::function<void(const std::optional<FramePose>&, bool)>& found_pose) {
   constexpr int enough_landmarks = 150;
   matches_.reset(now_.features->size());
   match_points_of_last_frame(map, predicted, radius_px, true);
@@ -150,7 +160,8 @@ double Tracker::match_last_frame(const Map& map, const Se3& predicted, double ra
 }
 
 // Projects either the last frame's landmarks or its bare depth readings, and matches them.
-void Tracker::match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks) {
+void Tracker::match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px,
+                                         bool landmarks) {
   const Se3 world_from_last = *map.resolve(last_->pose);
   const Se3 camera_from_world = predicted.inverse();
   projections_.clear();
@@ -198,8 +209,10 @@ std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const Fram
   // The map is the better reference; the last frame's own readings only carry where the map is thin.
   if (static_cast<int>(landmarks) >= 2 * options_.min_inliers) matches_.keep_landmarks_only();
   const int before = matches_.size();
-  const FramePose pose = solve_frame_pose(camera_, pyramid_, *now_.features, guess.world_from_camera, matches_);
-  if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < before) return std::nullopt;
+  const FramePose pose =
+      solve_frame_pose(camera_, pyramid_, *now_.features, guess.world_from_camera, matches_);
+  if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < before)
+    return std::nullopt;
   return pose;
 }
 
@@ -252,7 +265,8 @@ bool Tracker::believable(const Se3& world_from_last, const Se3& predicted, const
          rotation_angle(surprise.rotation()) <= options_.max_turn_change_rad_per_s * seconds + slack_rad;
 }
 
-TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog) {
+TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status,
+                             int backlog) {
   const Map& map = *snapshot;
   for (const Correspondence& c : matches_.all()) {
     if (!c.landmark.valid()) continue;
@@ -265,11 +279,13 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
   const Se3& world_from_anchor = map.keyframes().find(anchor)->world_from_camera;
   now_.pose = {anchor, world_from_anchor.inverse() * pose.world_from_camera};
   const double seconds = now_.timestamp_s - last_->timestamp_s;
-  const auto landmarks = std::count_if(now_.landmarks.begin(), now_.landmarks.end(), [](LandmarkId id) { return id.valid(); });
+  const auto landmarks =
+      std::count_if(now_.landmarks.begin(), now_.landmarks.end(), [](LandmarkId id) { return id.valid(); });
   if (landmarks < options_.few_inliers) {
     // What only the prediction held is passed on as weakly as it was known.
-    now_.tracked_link = TrackedLink{anchor, now_.pose.keyframe_from_camera,
-                                    pose.information + motion_prior(pose.world_from_camera, seconds).information};
+    now_.tracked_link =
+        TrackedLink{anchor, now_.pose.keyframe_from_camera,
+                    pose.information + motion_prior(pose.world_from_camera, seconds).information};
   }
 
   if (status == TrackStatus::relocalised) {
@@ -309,7 +325,8 @@ TrackedFrame Tracker::coast_or_lose(const Map& map, const Se3& predicted) {
   }
   // The last measured frame stays the one to match against; only the prediction moves on.
   const auto anchor = *map.reanchor(last_->pose);
-  now_.pose = {anchor.keyframe, map.keyframes().find(anchor.keyframe)->world_from_camera.inverse() * predicted};
+  now_.pose = {anchor.keyframe,
+               map.keyframes().find(anchor.keyframe)->world_from_camera.inverse() * predicted};
   return report(TrackStatus::coasting, predicted);
 }
 

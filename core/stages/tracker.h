@@ -43,21 +43,26 @@ struct TrackerOptions {
 
 template <typename Visitor>
 void describe(TrackerOptions& o, Visitor& field) {
-  field("search_radius_px", o.search_radius_px, 2.0, 200.0, "search around predicted points of the last frame");
+  field("search_radius_px", o.search_radius_px, 2.0, 200.0,
+        "search around predicted points of the last frame");
   field("local_search_radius_px", o.local_search_radius_px, 1.0, 50.0, "search around projected landmarks");
   field("local_keyframes", o.local_keyframes, 2, 200, "keyframes whose landmarks a frame is matched against");
   field("min_inliers", o.min_inliers, 6, 200, "fewer inlier matches than this are no pose");
   field("few_inliers", o.few_inliers, 0, 1000,
         "with fewer inlier matches than this, depth is aligned with a keyframe's as well");
-  field("min_features_to_start", o.min_features_to_start, 20, 5000, "features with depth needed to start a map");
-  field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0, "a pose that would need more speed is rejected");
-  field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0, "a pose that would need a faster turn is rejected");
+  field("min_features_to_start", o.min_features_to_start, 20, 5000,
+        "features with depth needed to start a map");
+  field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0,
+        "a pose that would need more speed is rejected");
+  field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0,
+        "a pose that would need a faster turn is rejected");
   field("max_velocity_change_m_per_s", o.max_velocity_change_m_per_s, 0.1, 100.0,
         "a pose that would need a larger change of velocity from one frame to the next is rejected");
   field("max_turn_change_rad_per_s", o.max_turn_change_rad_per_s, 0.1, 100.0,
         "a pose that would need a larger change of turn rate from one frame to the next is rejected");
   field("coast_s", o.coast_s, 0.0, 5.0, "how long the motion model is believed when nothing is measured");
-  field("coast_frames", o.coast_frames, 0, 100, "frames for which it is believed at least, however slow they come");
+  field("coast_frames", o.coast_frames, 0, 100,
+        "frames for which it is believed at least, however slow they come");
 }
 
 class Tracker {
@@ -76,22 +81,23 @@ class Tracker {
     std::shared_ptr<const FeatureSet> features;
     std::vector<LandmarkId> landmarks;  // per feature
     std::shared_ptr<const DepthGrid> surface;
-    KeyframeId surface_reference;              // whose surfaces held the pose; invalid where they were not needed
-    std::optional<TrackedLink> tracked_link;   // where landmarks are too few
+    KeyframeId surface_reference;  // whose surfaces held the pose; invalid where they were not needed
+    std::optional<TrackedLink> tracked_link;  // where landmarks are too few
     AnchoredPose pose;
   };
 
   void extract(const RgbdFrame& frame, TraceSink* trace);
   TrackedFrame start(const Snapshot& snapshot);
-  std::optional<FramePose> match_recent(const Map& map, const Se3& predicted, bool& guessed, TraceSink* trace);
+  std::optional<FramePose> match_recent(const Map& map, const Se3& predicted, bool& guessed,
+                                        TraceSink* trace);
   double match_last_frame(const Map& map, const Se3& predicted, double radius_px,
                           const std::function<void(const std::optional<FramePose>&, bool)>& found_pose);
   void match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks);
   std::optional<FramePose> refine_on_local_map(const Map& map, const FramePose& guess);
   void project_local_map(const Map& map, const Se3& world_from_camera);
   // What landmarks are too few to tell, surfaces may. Returns the better pose, or `pose` where they do not.
-  std::optional<FramePose> align_surfaces(const Map& map, const std::optional<FramePose>& pose, const Se3& predicted,
-                                          double seconds);
+  std::optional<FramePose> align_surfaces(const Map& map, const std::optional<FramePose>& pose,
+                                          const Se3& predicted, double seconds);
   std::optional<FramePose> hold_by_surfaces(const SurfaceReference& reference, const Se3& guess,
                                             const PosePriorTerm& prior, double seconds);
   SurfaceReference choose_surface(const Map& map, const Se3& world_from_camera);
@@ -100,7 +106,8 @@ class Tracker {
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
   const DepthGrid& surface_now() const { return *now_.surface; }
-  bool believable(const Se3& world_from_last, const Se3& predicted, const Se3& world_from_now, double seconds) const;
+  bool believable(const Se3& world_from_last, const Se3& predicted, const Se3& world_from_now,
+                  double seconds) const;
   void adopt_landmarks_of_own_keyframe(const Map& map);
   KeyframeId choose_anchor(const Map& map) const;
   TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);

@@ -66,7 +66,8 @@ std::optional<FramePose> Tracker::hold_by_surfaces(const SurfaceReference& refer
   const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
   const DepthAlignment aligned = aligner_.align(surface_now(), reference, guess, observations, prior);
   const Se3& pose = aligned.solution.world_from_camera;
-  if (!aligned.convincing() || !believable(*last_world_, prior.world_from_camera, pose, seconds)) return std::nullopt;
+  if (!aligned.convincing() || !believable(*last_world_, prior.world_from_camera, pose, seconds))
+    return std::nullopt;
   std::vector<std::uint8_t> inlier(observations.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned.solution.fit[i]);
   matches_.keep(inlier);

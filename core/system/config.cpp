@@ -49,7 +49,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string text_of(double value) {
-  if (value == std::floor(value) && std::abs(value) < 1e15) return std::to_string(static_cast<long long>(value));
+  if (value == std::floor(value) && std::abs(value) < 1e15)
+    return std::to_string(static_cast<long long>(value));
   std::string text = std::to_string(value);
   while (text.back() == '0') text.pop_back();
   return text;
@@ -58,7 +59,8 @@ std::string text_of(double value) {
 struct Collect {
   std::vector<OptionDescription> found;
   void operator()(const std::string& key, int& v, int low, int high, const char* meaning) {
-    found.push_back({key, std::int64_t{v}, {}, static_cast<double>(low), static_cast<double>(high), {}, meaning});
+    found.push_back(
+        {key, std::int64_t{v}, {}, static_cast<double>(low), static_cast<double>(high), {}, meaning});
   }
   void operator()(const std::string& key, double& v, double low, double high, const char* meaning) {
     found.push_back({key, v, {}, low, high, {}, meaning});
@@ -145,7 +147,8 @@ void Config::set(const std::string& key, const OptionValue& value) {
       nearest = option.key;
     }
   }
-  throw InputError("unknown option '" + key + "'; did you mean '" + nearest + "'? (`vsgraphs config` lists all)");
+  throw InputError("unknown option '" + key + "'; did you mean '" + nearest +
+                   "'? (`vsgraphs config` lists all)");
 }
 
 OptionValue Config::get(const std::string& key) const {

@@ -32,7 +32,8 @@ void describe(SystemOptions& o, Visitor& field) {
   field("realtime", o.realtime, "tracking never waits for mapping, as with a live camera");
   field("max_waiting_keyframes", o.max_waiting_keyframes, 1, 50,
         "unless realtime: tracking waits while more keyframes than this wait for the mapper");
-  field("schedule_out", o.schedule_out, AllowedValues{}, "file to record a run's schedule in, to replay it exactly");
+  field("schedule_out", o.schedule_out, AllowedValues{},
+        "file to record a run's schedule in, to replay it exactly");
   field("replay", o.replay, AllowedValues{}, "recorded schedule to follow, edit by edit");
 }
 

@@ -13,7 +13,9 @@ namespace {
 class ReplayingExecutor : public Executor {
  public:
   ReplayingExecutor(const Config& config, const Camera& camera)
-      : schedule_(Schedule::read(config.system.replay)), tracking_(config, camera), owner_(config, camera, cell_) {}
+      : schedule_(Schedule::read(config.system.replay)),
+        tracking_(config, camera),
+        owner_(config, camera, cell_) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     if (next_frame_ >= schedule_.frames.size()) return std::nullopt;
@@ -28,8 +30,9 @@ class ReplayingExecutor : public Executor {
 
   void finish() override {
     require_input(next_frame_ == schedule_.frames.size(),
-                  "replay: the schedule holds " + std::to_string(schedule_.frames.size()) + " frames, but only " +
-                      std::to_string(next_frame_) + " of them came; replay it on the sequence it was recorded on");
+                  "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
+                      " frames, but only " + std::to_string(next_frame_) +
+                      " of them came; replay it on the sequence it was recorded on");
     advance_to(schedule_.edits.size());
   }
 

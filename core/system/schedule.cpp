@@ -47,8 +47,8 @@ void Schedule::write(const std::string& path) const {
   {
     std::ofstream file(temporary);
     for (const FrameEvent& e : frames) {
-      file << "frame " << e.frame << ' ' << std::hex << std::bit_cast<std::uint64_t>(e.timestamp_s) << std::dec << ' '
-           << e.version << '\n';
+      file << "frame " << e.frame << ' ' << std::hex << std::bit_cast<std::uint64_t>(e.timestamp_s)
+           << std::dec << ' ' << e.version << '\n';
     }
     for (const EditEvent& e : edits) {
       if (e.kind == EditEvent::Kind::insert) {

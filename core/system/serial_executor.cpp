@@ -8,7 +8,8 @@ namespace {
 
 class SerialExecutor : public Executor {
  public:
-  SerialExecutor(const Config& config, const Camera& camera) : tracking_(config, camera), owner_(config, camera, cell_) {}
+  SerialExecutor(const Config& config, const Camera& camera)
+      : tracking_(config, camera), owner_(config, camera, cell_) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     TrackedFrame result = tracking_.track(frame, cell_.take());

@@ -78,12 +78,14 @@ std::vector<TimedPose> Slam::trajectory() const {
   const Snapshot map = snapshot();
   // A frame that became a keyframe is where its keyframe is.
   std::map<std::int64_t, Se3> keyframe_pose;
-  map->keyframes().for_each([&](KeyframeId, const Keyframe& k) { keyframe_pose[k.frame_index] = k.world_from_camera; });
+  map->keyframes().for_each(
+      [&](KeyframeId, const Keyframe& k) { keyframe_pose[k.frame_index] = k.world_from_camera; });
   std::vector<TimedPose> result;
   result.reserve(records_.size());
   for (const FrameRecord& record : records_) {
     const auto own = keyframe_pose.find(record.index);
-    const auto pose = own != keyframe_pose.end() ? std::optional<Se3>(own->second) : map->resolve(record.pose);
+    const auto pose =
+        own != keyframe_pose.end() ? std::optional<Se3>(own->second) : map->resolve(record.pose);
     if (pose) result.push_back({record.timestamp_s, *pose});
   }
   return result;

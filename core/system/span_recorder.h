@@ -12,9 +12,9 @@ namespace vsgraphs {
 
 struct SpanRecord {
   const char* name;
-  std::int64_t begin_us;     // since the process-wide steady clock's origin
+  std::int64_t begin_us;  // since the process-wide steady clock's origin
   std::int64_t duration_us;
-  float cpu_ms;              // of the thread that ran it
+  float cpu_ms;  // of the thread that ran it
   float wall_ms;
   std::int64_t frame;
 };

@@ -19,7 +19,10 @@ namespace {
 class ThreadedExecutor : public Executor {
  public:
   ThreadedExecutor(const Config& config, const Camera& camera)
-      : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_), requests_(queue_capacity) {
+      : options_(config.system),
+        tracking_(config, camera),
+        owner_(config, camera, cell_),
+        requests_(queue_capacity) {
     worker_ = std::thread([this] { work(); });
   }
   ~ThreadedExecutor() override { stop_worker(); }

@@ -25,7 +25,8 @@ void BlockMatrix::build(const std::vector<int>& dims, const std::vector<std::vec
 }
 
 int BlockMatrix::find(int row, int column) const {
-  const auto first = row_of_.begin() + column_begin_[column], last = row_of_.begin() + column_begin_[column + 1];
+  const auto first = row_of_.begin() + column_begin_[column],
+             last = row_of_.begin() + column_begin_[column + 1];
   const auto at = std::lower_bound(first, last, row);
   VSG_INVARIANT(at != last && *at == row);
   return static_cast<int>(at - row_of_.begin());
@@ -51,7 +52,8 @@ void BlockMatrix::to_sparse(const double* values, Eigen::SparseMatrix<double>& o
       for (int k = 0; k < dims_[c]; ++k) {
         out.outerIndexPtr()[offsets_[c] + k] = filled;
         for (int b = column_begin_[c]; b < column_begin_[c + 1]; ++b) {
-          for (int i = 0; i < dims_[row_of_[b]]; ++i) out.innerIndexPtr()[filled++] = offsets_[row_of_[b]] + i;
+          for (int i = 0; i < dims_[row_of_[b]]; ++i)
+            out.innerIndexPtr()[filled++] = offsets_[row_of_[b]] + i;
         }
       }
     }
@@ -78,7 +80,8 @@ bool ReducedSolver::solve(const double* values, const Eigen::VectorXd& b, Eigen:
     if (!analyzed_) sparse_cholesky_.analyzePattern(sparse_matrix_);
     analyzed_ = true;
     sparse_cholesky_.factorize(sparse_matrix_);
-    if (sparse_cholesky_.info() != Eigen::Success || !(sparse_cholesky_.vectorD().minCoeff() > 0)) return false;
+    if (sparse_cholesky_.info() != Eigen::Success || !(sparse_cholesky_.vectorD().minCoeff() > 0))
+      return false;
     x = sparse_cholesky_.solve(b);
     return x.allFinite();
   }

@@ -28,9 +28,9 @@ class BlockMatrix {
   void to_sparse(const double* values, Eigen::SparseMatrix<double>& out) const;
 
  private:
-  std::vector<int> dims_, offsets_;        // offsets_: one past the end too
+  std::vector<int> dims_, offsets_;         // offsets_: one past the end too
   std::vector<int> column_begin_, row_of_;  // compressed block columns
-  std::vector<int> value_begin_;           // one past the end too
+  std::vector<int> value_begin_;            // one past the end too
 };
 
 // Cholesky of the damped reduced system: dense for windows, sparse (Eigen SimplicialLDLT, AMD ordering) for maps.

@@ -3,7 +3,8 @@
 namespace vsgraphs {
 namespace {
 
-std::vector<int> place(std::size_t count, const std::vector<std::uint8_t>& fixed, int dof, std::vector<int>& dims) {
+std::vector<int> place(std::size_t count, const std::vector<std::uint8_t>& fixed, int dof,
+                       std::vector<int>& dims) {
   std::vector<int> at(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
     if (!fixed.empty() && fixed[i]) continue;
@@ -25,17 +26,21 @@ VariableOrder::VariableOrder(const BundleProblem& problem) {
 
 int VariableOrder::of(VariableRef v) const {
   switch (v.kind) {
-    case VariableKind::pose: return pose[v.index];
-    case VariableKind::plane: return plane[v.index];
-    case VariableKind::centroid: return centroid[v.index];
-    case VariableKind::marker: return marker[v.index];
+    case VariableKind::pose:
+      return pose[v.index];
+    case VariableKind::plane:
+      return plane[v.index];
+    case VariableKind::centroid:
+      return centroid[v.index];
+    case VariableKind::marker:
+      return marker[v.index];
   }
   return -1;
 }
 
 void retract(const VariableOrder& order, const BlockMatrix& pattern, const Eigen::VectorXd& step,
-             const std::vector<Se3>& poses, const StructureVariables& structures, std::vector<Se3>& moved_poses,
-             StructureVariables& moved_structures) {
+             const std::vector<Se3>& poses, const StructureVariables& structures,
+             std::vector<Se3>& moved_poses, StructureVariables& moved_structures) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (order.pose[i] >= 0) moved_poses[i] = poses[i].retract(step.segment<6>(pattern.offset(order.pose[i])));
   }
@@ -44,11 +49,13 @@ void retract(const VariableOrder& order, const BlockMatrix& pattern, const Eigen
     if (order.plane[i] >= 0) moved_structures.planes[i] = structures.planes[i].retract(part3(order.plane[i]));
   }
   for (std::size_t i = 0; i < structures.centroids.size(); ++i) {
-    if (order.centroid[i] >= 0) moved_structures.centroids[i] = structures.centroids[i] + part3(order.centroid[i]);
+    if (order.centroid[i] >= 0)
+      moved_structures.centroids[i] = structures.centroids[i] + part3(order.centroid[i]);
   }
   for (std::size_t i = 0; i < structures.markers.size(); ++i) {
     if (order.marker[i] < 0) continue;
-    moved_structures.markers[i] = structures.markers[i].retract(step.segment<6>(pattern.offset(order.marker[i])));
+    moved_structures.markers[i] =
+        structures.markers[i].retract(step.segment<6>(pattern.offset(order.marker[i])));
   }
 }
 
@@ -90,7 +97,8 @@ void DensePart::linearise(const VariableValues& values, const BlockMatrix& patte
     for (std::size_t i = 0; i < places.size(); ++i) {
       const int c = places[i];
       if (c < 0) continue;
-      b.segment(pattern.offset(c), pattern.dim(c)) -= weight * rows_.jacobians[i].transpose() * rows_.residual;
+      b.segment(pattern.offset(c), pattern.dim(c)) -=
+          weight * rows_.jacobians[i].transpose() * rows_.residual;
       for (std::size_t j = 0; j < places.size(); ++j) {
         const int r = places[j];
         if (r < c) continue;  // fixed, or the other half

@@ -20,8 +20,8 @@ struct VariableOrder {
 
 // Moves every free variable by its part of `step`.
 void retract(const VariableOrder& order, const BlockMatrix& pattern, const Eigen::VectorXd& step,
-             const std::vector<Se3>& poses, const StructureVariables& structures, std::vector<Se3>& moved_poses,
-             StructureVariables& moved_structures);
+             const std::vector<Se3>& poses, const StructureVariables& structures,
+             std::vector<Se3>& moved_poses, StructureVariables& moved_structures);
 
 class DensePart {
  public:
@@ -30,7 +30,8 @@ class DensePart {
   void add_pairs(std::vector<std::vector<int>>& rows) const;
   double cost(const VariableValues& values);
   // Adds J'J to the blocks of `matrix` and -J'r to `b`.
-  void linearise(const VariableValues& values, const BlockMatrix& pattern, double* matrix, Eigen::VectorXd& b);
+  void linearise(const VariableValues& values, const BlockMatrix& pattern, double* matrix,
+                 Eigen::VectorXd& b);
 
  private:
   const std::vector<std::unique_ptr<const DenseFactor>>& factors_;

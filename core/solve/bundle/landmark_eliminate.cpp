@@ -34,8 +34,12 @@ std::array<double, 6> inverse_or_zero(const double* h, const std::array<double, 
   const double d2 = h[5] + damp[2] - l20 * h[2] - l21 * t;
   if (!(d2 > 0)) return {};
   const double i2 = 1 / d2, m20 = l10 * l21 - l20;
-  return {i0 + l10 * l10 * i1 + m20 * m20 * i2, -l10 * i1 - m20 * l21 * i2, m20 * i2, i1 + l21 * l21 * i2,
-          -l21 * i2, i2};
+  return {i0 + l10 * l10 * i1 + m20 * m20 * i2,
+          -l10 * i1 - m20 * l21 * i2,
+          m20 * i2,
+          i1 + l21 * l21 * i2,
+          -l21 * i2,
+          i2};
 }
 
 }  // namespace
@@ -64,7 +68,8 @@ void LandmarkPart::prepare_edges(std::size_t l, const std::array<double, 6>& c, 
 }
 
 // Subtracts Y_j W_i' from the block of (j, i) for one edge i and all edges j from i on; returns one past their pairs.
-const int* LandmarkPart::subtract_column(const Edge& edge, int i, int edges, const int* pair, double* values) const {
+const int* LandmarkPart::subtract_column(const Edge& edge, int i, int edges, const int* pair,
+                                         double* values) const {
   Eigen::Matrix<double, 6, 3> w;
   for (int k = 0; k < 3; ++k) {
     w.col(k).head<3>() = edge.n().col(k);
@@ -84,9 +89,10 @@ const int* LandmarkPart::subtract_column(const Edge& edge, int i, int edges, con
     const Tall& y = tall_[j];
     for (int h = 0; h < 3; ++h, block += 12) {
       store(block, load(block) - (y.top[0] * even[h][0] + y.top[1] * even[h][1] + y.top[2] * even[h][2]));
-      store(block + 4,
-            load(block + 4) - (y.middle[0] * mixed[h][0] + y.middle[1] * mixed[h][1] + y.middle[2] * mixed[h][2]));
-      store(block + 8, load(block + 8) - (y.bottom[0] * odd[h][0] + y.bottom[1] * odd[h][1] + y.bottom[2] * odd[h][2]));
+      store(block + 4, load(block + 4) - (y.middle[0] * mixed[h][0] + y.middle[1] * mixed[h][1] +
+                                          y.middle[2] * mixed[h][2]));
+      store(block + 8,
+            load(block + 8) - (y.bottom[0] * odd[h][0] + y.bottom[1] * odd[h][1] + y.bottom[2] * odd[h][2]));
     }
   }
   return pair;
@@ -98,7 +104,8 @@ void LandmarkPart::eliminate(double lambda, double* values, Eigen::VectorXd& b) 
     prepare_edges(l, inverses_[l], b);
     const int edges = edge_begin_[l + 1] - edge_begin_[l];
     const int* pair = pair_value_.data() + pair_begin_[l];
-    for (int i = 0; i < edges; ++i) pair = subtract_column(edges_[edge_begin_[l] + i], i, edges, pair, values);
+    for (int i = 0; i < edges; ++i)
+      pair = subtract_column(edges_[edge_begin_[l] + i], i, edges, pair, values);
   }
 }
 

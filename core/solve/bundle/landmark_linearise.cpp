@@ -21,7 +21,8 @@ inline ProjectionLanes LandmarkPart::project_group(const Group& group, const Se3
   return project(k_, pose, x, y, z, group.seen);
 }
 
-double LandmarkPart::cost(const std::vector<Se3>& poses, const std::vector<Eigen::Vector3d>& landmarks) const {
+double LandmarkPart::cost(const std::vector<Se3>& poses,
+                          const std::vector<Eigen::Vector3d>& landmarks) const {
   double total = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Lanes of_pose = {};
@@ -50,17 +51,20 @@ void LandmarkPart::add_to_points(const Group& group, const Se3& pose, const Proj
   int at = 0;
   for (int k = 0; k < 3; ++k) {
     for (int i = k; i < 3; ++i) {
-      of_landmark[at++] = r[i][0] * of_edge[3 * k] + r[i][1] * of_edge[3 * k + 1] + r[i][2] * of_edge[3 * k + 2];
+      of_landmark[at++] =
+          r[i][0] * of_edge[3 * k] + r[i][1] * of_edge[3 * k + 1] + r[i][2] * of_edge[3 * k + 2];
     }
   }
-  for (int i = 0; i < 3; ++i) of_landmark[6 + i] = -(r[i][0] * info.g0 + r[i][1] * info.g1 + r[i][2] * info.g2);
+  for (int i = 0; i < 3; ++i)
+    of_landmark[6 + i] = -(r[i][0] * info.g0 + r[i][1] * info.g1 + r[i][2] * info.g2);
   for (int part = 0; part < 12; part += 4) {
     transpose(of_edge + part);
     transpose(of_landmark + part);
   }
   for (int k = 0; k < lane_count && group.source[k] >= 0; ++k) {
     double* landmark = landmarks_[group.landmark[k]].values.data();
-    for (int part = 0; part < 12; part += 4) store(landmark + part, load(landmark + part) + of_landmark[part + k]);
+    for (int part = 0; part < 12; part += 4)
+      store(landmark + part, load(landmark + part) + of_landmark[part + k]);
     if (group.edge[k] < 0) continue;
     // The last three, p, are the same for all observations of an edge.
     double* edge = edges_[group.edge[k]].values.data();
@@ -86,7 +90,8 @@ void LandmarkPart::linearise(const std::vector<Se3>& poses, const std::vector<Ei
       add_to_points(group, poses[i], q, info);
     }
     const int variable = variable_of_pose_[i];
-    if (variable >= 0) sums.add_to(Eigen::Map<Matrix6d>(values + diagonal_value_[variable]), b.data() + 6 * variable);
+    if (variable >= 0)
+      sums.add_to(Eigen::Map<Matrix6d>(values + diagonal_value_[variable]), b.data() + 6 * variable);
   }
 }
 

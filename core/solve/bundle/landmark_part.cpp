@@ -21,7 +21,8 @@ LandmarkPart::LandmarkPart(const BundleProblem& problem, const std::vector<int>&
   number_edges(problem, variable_of_pose);
 }
 
-void LandmarkPart::group_observations(const BundleProblem& problem, const std::vector<int>& variable_of_pose) {
+void LandmarkPart::group_observations(const BundleProblem& problem,
+                                      const std::vector<int>& variable_of_pose) {
   std::vector<int> count(variable_of_pose.size(), 0);
   for (const auto& o : problem.observations) ++count[o.pose];
   group_begin_.assign(1, 0);
@@ -91,7 +92,8 @@ void LandmarkPart::add_pairs(std::vector<std::vector<int>>& rows) const {
   std::vector<std::pair<int, int>> seen(edges_.size());  // edge, one past its landmark's last edge
   std::vector<int> next = begin;
   for (std::size_t l = 0; l < landmarks_.size(); ++l) {
-    for (int e = edge_begin_[l]; e < edge_begin_[l + 1]; ++e) seen[next[edge_variable_[e]]++] = {e, edge_begin_[l + 1]};
+    for (int e = edge_begin_[l]; e < edge_begin_[l + 1]; ++e)
+      seen[next[edge_variable_[e]]++] = {e, edge_begin_[l + 1]};
   }
   std::vector<int> mark(static_cast<std::size_t>(free_poses_), -1);
   for (int c = 0; c < free_poses_; ++c) {

@@ -15,7 +15,8 @@ namespace vsgraphs {
 class LandmarkPart {
  public:
   // variable_of_pose: place of each free pose in the reduced system (ascending with the pose's index), -1 if fixed.
-  LandmarkPart(const BundleProblem& problem, const std::vector<int>& variable_of_pose, const BundleOptions& options);
+  LandmarkPart(const BundleProblem& problem, const std::vector<int>& variable_of_pose,
+               const BundleOptions& options);
 
   // Appends to rows[c] the free poses r > c that share a landmark with c (unsorted, each once).
   void add_pairs(std::vector<std::vector<int>>& rows) const;
@@ -30,7 +31,8 @@ class LandmarkPart {
   // Subtracts from the damped `values` and from `b` what the landmarks explain.
   void eliminate(double lambda, double* values, Eigen::VectorXd& b);
   // Given the reduced step, writes landmarks + step and returns the decrease the model predicts for the landmarks' part.
-  double back_substitute(double lambda, const Eigen::VectorXd& step, const std::vector<Eigen::Vector3d>& landmarks,
+  double back_substitute(double lambda, const Eigen::VectorXd& step,
+                         const std::vector<Eigen::Vector3d>& landmarks,
                          std::vector<Eigen::Vector3d>& moved) const;
 
   // The 95 % gate at the given state, from the measurements as they came, in the caller's order.
@@ -52,12 +54,16 @@ class LandmarkPart {
   struct Edge {
     std::array<double, 12> values{};  // N column-major, p
     Eigen::Map<const Eigen::Matrix3d> n() const { return Eigen::Map<const Eigen::Matrix3d>(values.data()); }
-    Eigen::Map<const Eigen::Vector3d> p() const { return Eigen::Map<const Eigen::Vector3d>(values.data() + 9); }
+    Eigen::Map<const Eigen::Vector3d> p() const {
+      return Eigen::Map<const Eigen::Vector3d>(values.data() + 9);
+    }
   };
   struct Landmark {
     std::array<double, 12> values{};  // J_point' J_point: 00 10 20 11 21 22; -gradient; padding
     const double* h() const { return values.data(); }
-    Eigen::Map<const Eigen::Vector3d> b() const { return Eigen::Map<const Eigen::Vector3d>(values.data() + 6); }
+    Eigen::Map<const Eigen::Vector3d> b() const {
+      return Eigen::Map<const Eigen::Vector3d>(values.data() + 6);
+    }
   };
   // Rows 0-3, rows 4 5 0 1 and rows 2-5 of each column of a 6x3 block: two columns of a 6x6 product, one after the other in
   // memory, are then three full registers.
@@ -69,7 +75,8 @@ class LandmarkPart {
   void number_edges(const BundleProblem& problem, const std::vector<int>& variable_of_pose);
   ProjectionLanes project_group(const Group& group, const Se3& pose,
                                 const std::vector<Eigen::Vector3d>& landmarks) const;
-  void add_to_points(const Group& group, const Se3& pose, const ProjectionLanes& q, const PointInformation& info);
+  void add_to_points(const Group& group, const Se3& pose, const ProjectionLanes& q,
+                     const PointInformation& info);
   void prepare_edges(std::size_t l, const std::array<double, 6>& inverse, Eigen::VectorXd& b);
   const int* subtract_column(const Edge& edge, int i, int edges, const int* pair, double* values) const;
 

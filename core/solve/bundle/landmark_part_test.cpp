@@ -101,7 +101,8 @@ TEST(LandmarkPart, EliminationSolvesTheFactorsNormalEquations) {
   }
   const Eigen::VectorXd step = full.h.ldlt().solve(full.b);
   for (int v = 0; v < 2; ++v) {
-    Eigen::Map<Matrix6d>(values.data() + pattern.value_begin(pattern.diagonal(v))).diagonal().array() += pose_damping;
+    Eigen::Map<Matrix6d>(values.data() + pattern.value_begin(pattern.diagonal(v))).diagonal().array() +=
+        pose_damping;
   }
   part.eliminate(lambda, values.data(), b);
   Eigen::VectorXd pose_step;
@@ -126,7 +127,8 @@ TEST(LandmarkPart, PredictsTheDecreaseOfItsModel) {
   std::vector<Eigen::Vector3d> moved(problem.landmarks.size());
   const double predicted = part.back_substitute(1e-4, step, problem.landmarks, moved);
   Eigen::VectorXd delta(full.b.size());
-  for (std::size_t l = 0; l < moved.size(); ++l) delta.segment<3>(3 * static_cast<Eigen::Index>(l)) = moved[l] - problem.landmarks[l];
+  for (std::size_t l = 0; l < moved.size(); ++l)
+    delta.segment<3>(3 * static_cast<Eigen::Index>(l)) = moved[l] - problem.landmarks[l];
   const double model = full.b.dot(delta) - 0.5 * delta.dot(full.h * delta);
   EXPECT_NEAR(predicted, model, 1e-9 * std::abs(model));
 }

@@ -15,8 +15,8 @@ namespace {
 
 void check_flags(const char* what, std::size_t values, const std::vector<std::uint8_t>& fixed) {
   require_input(fixed.empty() || fixed.size() == values,
-                std::string("bundle adjustment: ") + what + " has " + std::to_string(fixed.size()) + " flags for " +
-                    std::to_string(values) + " variables; give one each, or none");
+                std::string("bundle adjustment: ") + what + " has " + std::to_string(fixed.size()) +
+                    " flags for " + std::to_string(values) + " variables; give one each, or none");
 }
 
 void check_values(const BundleProblem& problem) {
@@ -37,11 +37,13 @@ void check_values(const BundleProblem& problem) {
 }
 
 void check_observations(const BundleProblem& problem) {
-  const int poses = static_cast<int>(problem.poses.size()), landmarks = static_cast<int>(problem.landmarks.size());
+  const int poses = static_cast<int>(problem.poses.size()),
+            landmarks = static_cast<int>(problem.landmarks.size());
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
     const ReprojectionObservation& o = problem.observations[i];
     if (o.pose < 0 || o.pose >= poses) refuse("observation", i, "names a pose that is not there");
-    if (o.landmark < 0 || o.landmark >= landmarks) refuse("observation", i, "names a landmark that is not there");
+    if (o.landmark < 0 || o.landmark >= landmarks)
+      refuse("observation", i, "names a landmark that is not there");
     // One test for all: a sum is finite only if its terms are.
     if (!std::isfinite(o.u + o.v + o.inverse_depth + o.inv_sigma_px + o.inv_sigma_inverse_depth))
       refuse("observation", i, "holds a value that is not finite");
@@ -54,10 +56,14 @@ void check_factors(const BundleProblem& problem) {
   const StructureVariables& s = problem.structures;
   const auto count = [&](VariableKind kind) {
     switch (kind) {
-      case VariableKind::pose: return problem.poses.size();
-      case VariableKind::plane: return s.planes.size();
-      case VariableKind::centroid: return s.centroids.size();
-      case VariableKind::marker: return s.markers.size();
+      case VariableKind::pose:
+        return problem.poses.size();
+      case VariableKind::plane:
+        return s.planes.size();
+      case VariableKind::centroid:
+        return s.centroids.size();
+      case VariableKind::marker:
+        return s.markers.size();
     }
     return std::size_t{0};
   };

@@ -28,7 +28,9 @@ struct VariableValues {
   const Eigen::Vector3d& centroid(int i) const { return structures.centroids[static_cast<std::size_t>(i)]; }
   const Se3& marker(int i) const { return structures.markers[static_cast<std::size_t>(i)]; }
   // A pose or a marker: both are rigid transforms into the world.
-  const Se3& frame(VariableRef v) const { return v.kind == VariableKind::marker ? marker(v.index) : pose(v.index); }
+  const Se3& frame(VariableRef v) const {
+    return v.kind == VariableKind::marker ? marker(v.index) : pose(v.index);
+  }
 };
 
 class DenseFactor {
@@ -55,7 +57,8 @@ class DenseFactor {
   void resize(FactorRows& out) const {
     out.residual.resize(rows_);
     if (out.jacobians.size() < variables_.size()) out.jacobians.resize(variables_.size());
-    for (std::size_t i = 0; i < variables_.size(); ++i) out.jacobians[i].resize(rows_, dof_of(variables_[i].kind));
+    for (std::size_t i = 0; i < variables_.size(); ++i)
+      out.jacobians[i].resize(rows_, dof_of(variables_[i].kind));
   }
 
  private:

@@ -9,10 +9,10 @@
 namespace vsgraphs {
 
 struct PointToPlane {
-  Eigen::Vector3d point_in_camera = Eigen::Vector3d::Zero();    // m
-  Eigen::Vector3d normal_in_world = Eigen::Vector3d::UnitZ();   // unit
-  double offset_m = 0;                                          // d
-  double inv_sigma = 1;                                         // 1/m, along the normal
+  Eigen::Vector3d point_in_camera = Eigen::Vector3d::Zero();   // m
+  Eigen::Vector3d normal_in_world = Eigen::Vector3d::UnitZ();  // unit
+  double offset_m = 0;                                         // d
+  double inv_sigma = 1;                                        // 1/m, along the normal
 };
 
 // Returns the whitened residual; `by_pose` (may be null) receives its 1x6 Jacobian as a column.

@@ -56,7 +56,9 @@ TEST(RelativePose, JacobiansAgreeWithDifferences) {
   for (double angle : radians) {
     const Se3 a = Se3::exp(tangent(rng, 2, 1)), b = Se3::exp(tangent(rng, 2, 1));
     const Se3 measured = a.inverse() * b * Se3::exp(tangent(rng, angle > 0 ? 1 : 0, angle));
-    check(RelativePose({VariableKind::pose, 0}, {VariableKind::pose, 1}, measured, some_sqrt_information(rng)), {a, b});
+    check(
+        RelativePose({VariableKind::pose, 0}, {VariableKind::pose, 1}, measured, some_sqrt_information(rng)),
+        {a, b});
   }
 }
 

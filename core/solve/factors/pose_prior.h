@@ -9,7 +9,9 @@ namespace vsgraphs {
 class PosePrior final : public DenseFactor {
  public:
   PosePrior(VariableRef frame, const Se3& prior, const Matrix6d& sqrt_information, Huber robust = {})
-      : DenseFactor({frame}, 6, robust), prior_inverse_(prior.inverse()), sqrt_information_(sqrt_information) {}
+      : DenseFactor({frame}, 6, robust),
+        prior_inverse_(prior.inverse()),
+        sqrt_information_(sqrt_information) {}
 
   bool evaluate(const VariableValues& values, bool with_jacobians, FactorRows& out) const override {
     const Vector6d error = (prior_inverse_ * values.frame(variables()[0])).log();

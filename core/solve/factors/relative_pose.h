@@ -9,7 +9,8 @@ namespace vsgraphs {
 
 class RelativePose final : public DenseFactor {
  public:
-  RelativePose(VariableRef a, VariableRef b, const Se3& a_from_b, const Matrix6d& sqrt_information, Huber robust = {})
+  RelativePose(VariableRef a, VariableRef b, const Se3& a_from_b, const Matrix6d& sqrt_information,
+               Huber robust = {})
       : DenseFactor({a, b}, 6, robust), b_from_a_(a_from_b.inverse()), sqrt_information_(sqrt_information) {}
 
   bool evaluate(const VariableValues& values, bool with_jacobians, FactorRows& out) const override {

@@ -27,8 +27,10 @@ void check(const Eigen::Vector3d& in_camera, Rng& rng) {
     return at.residual;
   };
   const double step = 1e-4 * in_camera.z();
-  expect_jacobian(rows.by_pose, [&](const Eigen::VectorXd& xi) { return moved(pose.retract(xi), point); }, 1e-7, step);
-  expect_jacobian(rows.by_point, [&](const Eigen::VectorXd& d) { return moved(pose, point + d); }, 1e-7, step);
+  expect_jacobian(
+      rows.by_pose, [&](const Eigen::VectorXd& xi) { return moved(pose.retract(xi), point); }, 1e-7, step);
+  expect_jacobian(
+      rows.by_point, [&](const Eigen::VectorXd& d) { return moved(pose, point + d); }, 1e-7, step);
 }
 
 TEST(Reprojection, JacobiansAgreeWithDifferences) {
