@@ -1,0 +1,192 @@
+#include "core/stages/culling.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/map/test_map.h"
+
+namespace vsgraphs {
+namespace {
+
+using namespace test;
+
+class ProbationTest : public ::testing::Test {
+ protected:
+  ProbationTest() {
+    for (int k = 0; k < 3; ++k)
+      keyframes_.push_back(add_keyframe(map_, keyframe_seeing(camera_, standing_at(0.1 * k), points_)));
+  }
+  // A landmark seen by that many keyframes, and found in so many of the frames that should show it.
+  LandmarkId add(int observers, std::uint32_t visible, std::uint32_t found) {
+    std::vector<Observation> observations;
+    for (int k = 0; k < observers; ++k)
+      observations.push_back({keyframes_[static_cast<std::size_t>(k)], next_feature_});
+    const LandmarkId id = add_landmark(map_, points_[next_feature_], next_feature_, observations);
+    map_.apply(CountSightings{id, visible, found});
+    ++next_feature_;
+    return id;
+  }
+  // Is it in the map after being judged so many keyframes after its birth?
+  bool survives(LandmarkId id, int age) {
+    Probation probation;
+    probation.admit({id}, 10);
+    Draft draft(map_.snapshot());
+    probation.judge(options_, 10 + age, draft);
+    return draft.map().landmarks().contains(id);
+  }
+
+  Camera camera_;
+  CullingOptions options_;
+  Points points_ = point_grid(5, 4);
+  Map map_;
+  std::vector<KeyframeId> keyframes_;
+  std::uint16_t next_feature_ = 0;
+};
+
+TEST_F(ProbationTest, SeldomFoundIsRemoved) {
+  EXPECT_FALSE(survives(add(3, 100, 24), 0));
+  EXPECT_TRUE(survives(add(3, 100, 25), 0));
+}
+
+TEST_F(ProbationTest, ThinlyObservedIsRemovedWhenItsTimeIsUp) {
+  const LandmarkId once = add(1, 1, 1), twice = add(2, 1, 1);
+  EXPECT_TRUE(survives(once, 0));
+  EXPECT_TRUE(survives(once, 1));
+  EXPECT_FALSE(survives(once, 2));
+  EXPECT_TRUE(survives(twice, 2));
+  EXPECT_TRUE(survives(twice, 3));
+}
+
+TEST_F(ProbationTest, SeenByNobodyIsRemovedAtOnce) { EXPECT_FALSE(survives(add(0, 1, 1), 0)); }
+
+TEST_F(ProbationTest, WhoPassedIsNotJudgedAgain) {
+  const LandmarkId id = add(3, 1, 1);
+  Probation probation;
+  probation.admit({id}, 10);
+  Draft draft(map_.snapshot());
+  probation.judge(options_, 12, draft);
+  draft.record(CountSightings{id, 1000, 0});
+  probation.judge(options_, 12, draft);
+  EXPECT_FALSE(draft.map().landmarks().contains(id)) << "still young at an age of 2";
+
+  Draft other(map_.snapshot());
+  Probation long_ago;
+  long_ago.admit({id}, 10);
+  long_ago.judge(options_, 13, other);
+  other.record(CountSightings{id, 1000, 0});
+  long_ago.judge(options_, 14, other);
+  EXPECT_TRUE(other.map().landmarks().contains(id)) << "released at an age of 3";
+}
+
+TEST_F(ProbationTest, VanishedLandmarksAreForgotten) {
+  const LandmarkId merged = add(3, 1, 1), into = add(3, 1, 1);
+  Probation probation;
+  probation.admit({merged}, 10);
+  map_.apply(MergeLandmark{merged, into});
+  Draft draft(map_.snapshot());
+  probation.judge(options_, 11, draft);
+  EXPECT_TRUE(draft.take().operations.empty());
+}
+
+// Five keyframes side by side see the same twenty points.
+class KeyframeCullingTest : public ::testing::Test {
+ protected:
+  KeyframeCullingTest() {
+    for (int k = 0; k < 5; ++k) add(keyframe_seeing(camera_, standing_at(0.1 * k), points_));
+  }
+  void add(const Keyframe& keyframe) { keyframes_.push_back(add_keyframe(map_, keyframe)); }
+  void observe_all() { landmarks_ = add_landmarks(map_, points_, keyframes_); }
+  void unobserve(int keyframe, int count) {
+    for (int i = 0; i < count; ++i)
+      map_.apply(RemoveObservation{landmarks_[static_cast<std::size_t>(i)], at(keyframe)});
+  }
+  KeyframeId at(int k) const { return keyframes_[static_cast<std::size_t>(k)]; }
+  // Which keyframes are gone when those of the given numbers are candidates, by number.
+  std::vector<int> culled(const std::vector<int>& candidates) {
+    std::vector<KeyframeId> ids;
+    for (const int k : candidates) ids.push_back(at(k));
+    Draft draft(map_.snapshot());
+    cull_keyframes(options_, ids, draft);
+    std::vector<int> gone;
+    for (int k = 0; k < static_cast<int>(keyframes_.size()); ++k)
+      if (!draft.map().keyframes().contains(at(k))) gone.push_back(k);
+    return gone;
+  }
+
+  Camera camera_;
+  CullingOptions options_;
+  Points points_ = point_grid(5, 4);
+  Map map_;
+  std::vector<KeyframeId> keyframes_;
+  std::vector<LandmarkId> landmarks_;
+};
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST_F(KeyframeCullingTest, RedundantIsRemovedUntilWitnessesRunShort) {
+  observe_all();
+  EXPECT_THAT(culled({2}), ElementsAre(2));
+  // Four are left after the first: three witnesses for the second. Then two: too few.
+  EXPECT_THAT(culled({1, 2, 3, 4}), ElementsAre(1, 2));
+}
+
+TEST_F(KeyframeCullingTest, TheFirstKeyframeStays) {
+  observe_all();
+  EXPECT_THAT(culled({0}), IsEmpty());
+}
+
+TEST_F(KeyframeCullingTest, KeyframesHeldByALinkStay) {
+  Keyframe linked = keyframe_seeing(camera_, standing_at(0.5), points_);
+  linked.tracked_link = TrackedLink{at(0), standing_at(0.5), Matrix6d::Identity()};
+  add(linked);
+  observe_all();
+  EXPECT_THAT(culled({5}), IsEmpty());
+  EXPECT_THAT(culled({4}), ElementsAre(4));
+}
+
+TEST_F(KeyframeCullingTest, WhoShowsSomethingOfItsOwnStays) {
+  observe_all();
+  // Two of twenty points have two witnesses only: 18 of 20 is not more than the share of 0.9.
+  unobserve(0, 2);
+  unobserve(1, 2);
+  EXPECT_THAT(culled({4}), IsEmpty());
+  options_.redundant_share = 0.85;
+  EXPECT_THAT(culled({4}), ElementsAre(4));
+}
+
+TEST_F(KeyframeCullingTest, CoarserSightsAreNoWitnesses) {
+  // Two of the others see everything two levels coarser.
+  for (int k = 5; k < 7; ++k) {
+    add(with_features_changed(keyframe_seeing(camera_, standing_at(0.1 * k), points_), camera_, [](auto& f) {
+      for (Feature& feature : f) feature.level = 2;
+    }));
+  }
+  keyframes_.erase(keyframes_.begin() + 1, keyframes_.begin() + 3);  // first, 3, 4 and the two coarse ones
+  observe_all();
+  EXPECT_THAT(culled({1}), IsEmpty());       // two fine witnesses
+  EXPECT_THAT(culled({3}), ElementsAre(3));  // a coarse one has four
+}
+
+TEST_F(KeyframeCullingTest, PointsWithoutDepthHaveNoSay) {
+  Keyframe keyframe = keyframe_seeing(camera_, standing_at(0.5), points_);
+  add(with_features_changed(keyframe, camera_, [](auto& f) {
+    for (std::size_t i = 0; i < 5; ++i) f[i].depth_m = 0;
+  }));
+  observe_all();
+  for (int k = 0; k < 5; ++k) unobserve(k, 5);  // the five without depth are its own
+  EXPECT_THAT(culled({5}), ElementsAre(5));
+}
+
+TEST_F(KeyframeCullingTest, FramesOfARemovedKeyframeHangOnItsClosestNeighbour) {
+  options_.redundant_witnesses = 1;
+  observe_all();
+  unobserve(0, 10);
+  unobserve(1, 5);
+  Draft draft(map_.snapshot());
+  cull_keyframes(options_, {at(3)}, draft);
+  EXPECT_EQ(draft.map().reanchor({at(3), Se3{}})->keyframe, at(2));
+}
+
+}  // namespace
+}  // namespace vsgraphs
