@@ -95,10 +95,11 @@ inline void append_peaks(const std::uint8_t* above, const std::uint8_t* here, co
   }
 }
 
-// Peak of the parabola through three values of which the middle one is the largest.
+// Peak of the parabola through three values, at most half a step from the middle one. At the rim of the searched
+// area the middle one need not be the largest: then there is no peak to speak of.
 float parabola_peak(int before, int here, int after) {
   const int bend = 2 * here - before - after;
-  return bend > 0 ? 0.5f * static_cast<float>(after - before) / static_cast<float>(bend) : 0.0f;
+  return bend > 0 && here >= before && here >= after ? 0.5f * static_cast<float>(after - before) / static_cast<float>(bend) : 0.0f;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/vision/test_images.h"
 
@@ -106,6 +107,20 @@ TEST(FastCorners, AWhiteSquaresCornersAreFoundAndItsEdgesAreNot) {
     EXPECT_LE(std::min(std::abs(c.x - 40), std::abs(c.x - 79)), 2);
     EXPECT_LE(std::min(std::abs(c.y - 40), std::abs(c.y - 79)), 2);
     EXPECT_EQ(c.score, 190);
+  }
+}
+
+// At the rim of the searched area a corner's neighbour may score higher and still not be a corner: the position
+// then must not run away (it once left the image).
+TEST(FastCorners, NoPixelIsMovedByMoreThanHalf) {
+  const Image<std::uint8_t> image = test::textured_image(200, 150, 3);
+  for (int y = 6; y + 7 < image.height; ++y) {
+    for (int x = 6; x + 7 < image.width; ++x) {
+      const SubpixelShift shift =
+          refine(image.view(), {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), 50});
+      ASSERT_LE(std::abs(shift.x), 0.5f) << x << ' ' << y;
+      ASSERT_LE(std::abs(shift.y), 0.5f) << x << ' ' << y;
+    }
   }
 }
 
