@@ -36,6 +36,7 @@ Schedule Schedule::read(const std::string& path) {
     } else {
       ok = false;
     }
+    ok = ok && (in >> std::ws).eof();
     require_input(ok, path + ":" + std::to_string(number) + ": not a line of a schedule");
   }
   require_input(!schedule.frames.empty(), path + ": holds no frames; it is not a recorded schedule");
@@ -64,7 +65,10 @@ void Schedule::write(const std::string& path) const {
       throw InputError(path + ": cannot be written; check the folder and the space left");
     }
   }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) throw InputError(path + ": cannot be written");
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw InputError(path + ": cannot be written; is there a folder of that name?");
+  }
 }
 
 }  // namespace vsgraphs
