@@ -1,4 +1,5 @@
 # Writes HEADER with the commit of SOURCE ("unknown" outside a git checkout, "+changes" where files differ from it).
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C ${SOURCE} rev-parse --short=12 HEAD
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
 if(failed)
@@ -12,6 +13,6 @@ else()
 endif()
 file(CONFIGURE OUTPUT ${HEADER} CONTENT
 "#pragma once
-#define VSGRAPHS_COMMIT \"@commit@\"
-#define VSGRAPHS_COMPILER \"@COMPILER@\"
-" @ONLY)
+#define VSGRAPHS_COMMIT \"${commit}\"
+#define VSGRAPHS_COMPILER \"${COMPILER}\"
+")
