@@ -48,14 +48,16 @@ class ShortRun {
  public:
   explicit ShortRun(const Config& config) : slam_(config, small_camera()) {}
 
-  // Frame `index`, or a black one in its place.
-  TrackedFrame track(int index, bool black = false) {
+  enum class Sees { all, depth_only, nothing };
+
+  TrackedFrame track(int index, Sees sees = Sees::all) {
     RgbdFrame frame;
     frame.timestamp_s = index / fps;
     const ImageView<std::uint8_t> wall = wall_.view();
-    frame.grey = black ? dark_.view()
-                       : ImageView<std::uint8_t>{wall.data + index * shift_px, width, height, wall.stride};
-    frame.depth.metres = depth_.view();
+    frame.grey = sees == Sees::all
+                     ? ImageView<std::uint8_t>{wall.data + index * shift_px, width, height, wall.stride}
+                     : dark_.view();
+    frame.depth.metres = sees == Sees::nothing ? no_depth_.view() : depth_.view();
     return slam_.track(frame);
   }
   void track_all() {
@@ -68,6 +70,7 @@ class ShortRun {
   Image<std::uint8_t> wall_ = painted_wall();
   Image<std::uint8_t> dark_{width, height, 0};
   Image<float> depth_{width, height, static_cast<float>(wall_m)};
+  Image<float> no_depth_{width, height, 0.0F};
   Slam slam_;
 };
 
@@ -145,15 +148,30 @@ TEST(Slam, ReplayRepeatsAThreadedRun) {
   expect_same_bytes(recorded.slam().trajectory(), replayed.slam().trajectory());
 }
 
-TEST(Slam, DarknessIsSurvivedAndSaid) {
+TEST(Slam, ACoveredLensIsSurvivedAndSaid) {
   ShortRun run(configured("threaded"));
   for (int i = 0; i < 15; ++i) run.track(i);
-  // The lights go out for longer than coasting is allowed.
-  for (int i = 15; i < 35; ++i) EXPECT_NE(run.track(i, true).status, TrackStatus::ok);
+  // For longer than coasting is allowed.
+  for (int i = 15; i < 35; ++i) EXPECT_NE(run.track(i, ShortRun::Sees::nothing).status, TrackStatus::ok);
   EXPECT_TRUE(has_pose(run.track(35).status));
   run.slam().finish();
   const std::vector<std::string> warnings = run.slam().statistics().warnings;
   EXPECT_THAT(warnings, testing::ElementsAre(testing::HasSubstr("lost"), testing::HasSubstr("relocalised")));
+  EXPECT_LT(largest_error_m({run.slam().trajectory().back()}), 0.02);
+}
+
+// The lights go out, depth goes on: the wall holds the distance and the turn, but not the way along it.
+TEST(Slam, InTheDarkAWallHoldsThePoseOnlyInPart) {
+  ShortRun run(configured("serial"));
+  for (int i = 0; i < 15; ++i) run.track(i);
+  for (int i = 15; i < 30; ++i) {
+    const TrackedFrame frame = run.track(i, ShortRun::Sees::depth_only);
+    EXPECT_EQ(frame.status, TrackStatus::coasting) << "frame " << i;
+    EXPECT_NEAR(frame.world_from_camera.translation().z(), 0, 0.01) << "frame " << i;
+  }
+  EXPECT_TRUE(has_pose(run.track(30).status));  // the first with light has only dark ones to be compared with
+  for (int i = 31; i < frame_count; ++i) EXPECT_EQ(run.track(i).status, TrackStatus::ok) << "frame " << i;
+  run.slam().finish();
   EXPECT_LT(largest_error_m({run.slam().trajectory().back()}), 0.02);
 }
 
