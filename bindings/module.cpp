@@ -12,6 +12,8 @@ NB_MODULE(_core, m) {
       std::rethrow_exception(error);
     } catch (const vsgraphs::InputError& e) {
       PyErr_SetString(nanobind::module_::import_("vsgraphs.errors").attr("InputError").ptr(), e.what());
+    } catch (const vsgraphs::RunError& e) {
+      PyErr_SetString(nanobind::module_::import_("vsgraphs.errors").attr("RunError").ptr(), e.what());
     }
   });
   m.def(

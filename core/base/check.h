@@ -19,6 +19,12 @@ class InvariantError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
+// A run cannot go on as it was asked to: a replay departs from its schedule. What was done so far stays valid.
+class RunError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 inline void require_input(bool ok, const std::string& message) {
   if (!ok) throw InputError(message);
 }

@@ -55,6 +55,9 @@ void Camera::validate() const {
   positive(depth_min_m, "depth_min_m");
   positive(depth_max_m, "depth_max_m");
   positive(depth_noise.offset_m, "depth_noise.offset_m");
+  require_input(std::isfinite(depth_noise.scale_per_m) && depth_noise.scale_per_m >= 0 &&
+                    std::isfinite(depth_noise.onset_m),
+                "camera: depth_noise needs a scale of zero or more and a finite onset");
   require_input(std::isfinite(depth_noise.alignment_m) && depth_noise.alignment_m >= 0,
                 "camera: depth_noise.alignment_m must be zero or more");
   require_input(std::isfinite(cx) && std::isfinite(cy) && contains(cx, cy),

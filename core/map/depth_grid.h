@@ -12,7 +12,7 @@ struct SurfaceSample {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();  // m, camera frame; z = 0: no reading
   Eigen::Vector3f normal =
       Eigen::Vector3f::Zero();  // unit, towards the camera; zero: not on a smooth surface
-  bool has_normal() const { return normal.z() != 0; }
+  bool has_normal() const { return normal.squaredNorm() > 0; }
 };
 
 struct DepthGrid {

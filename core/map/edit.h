@@ -38,6 +38,7 @@ struct AddObservation {
   LandmarkId landmark;
   Observation observation;
 };
+// A landmark that loses its last observation goes too.
 struct RemoveObservation {
   LandmarkId landmark;
   KeyframeId keyframe;

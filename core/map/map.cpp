@@ -125,6 +125,8 @@ void Map::apply_one(const RemoveObservation& op) {
   if (found == observations.end()) return;
   detach(op.landmark, *found);
   observations.erase(found);
+  // Nothing holds it in place any longer.
+  if (observations.empty()) landmarks_.erase(op.landmark);
 }
 
 void Map::apply_one(const MoveKeyframe& op) {

@@ -14,7 +14,7 @@ namespace vsgraphs {
 struct Window {
   std::vector<KeyframeId> free;        // poses to improve
   std::vector<KeyframeId> fixed;       // poses that hold the rest in place
-  std::vector<LandmarkId> landmarks;   // seen by at least two keyframes of the window
+  std::vector<LandmarkId> landmarks;   // seen by at least two keyframes
   std::vector<LandmarkId> passengers;  // seen by one free keyframe alone: they move with it
 };
 

@@ -253,6 +253,17 @@ TEST_F(WrongStart, OnlyTheFalseObservationIsRemoved) {
   }
 }
 
+TEST_F(WrongStart, ALandmarkThatAllContradictVanishes) {
+  // With one witness left there is no telling who is right.
+  const LandmarkId doubtful = keyframe(moved).landmarks[7];
+  map_.apply(RemoveObservation{doubtful, witnesses[0]});
+  map_.apply(RemoveObservation{doubtful, witnesses[1]});
+  const Map after = adjusted();
+  EXPECT_FALSE(after.landmarks().contains(doubtful));
+  EXPECT_FALSE(after.keyframes().find(moved)->landmarks[7].valid());
+  EXPECT_FALSE(after.keyframes().find(witnesses[2])->landmarks[7].valid());
+}
+
 TEST_F(WrongStart, PassengersMoveWithTheirKeyframe) {
   // It stood 0.05 m off with its keyframe, which has gone back.
   EXPECT_LT((adjusted().landmarks().find(passenger)->point_in_world - seen[35]).norm(), 1e-3);

@@ -16,7 +16,6 @@ void Probation::judge(const CullingOptions& options, std::int64_t keyframe_count
     const auto age = keyframe_count - entry.born;
     const auto observations = static_cast<int>(landmark->observations.size());
     const bool seldom_found = landmark->found_count < options.min_found_share * landmark->visible_count;
-    // The demand grows with age: a landmark has had that many chances to be seen by a keyframe.
     const bool thinly_observed =
         age >= options.probation_keyframes - 1 && observations < options.min_observations;
     if (seldom_found || thinly_observed || observations == 0) {

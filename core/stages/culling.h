@@ -22,7 +22,7 @@ template <typename Visitor>
 void describe(CullingOptions& o, Visitor& field) {
   field("min_found_share", o.min_found_share, 0.0, 1.0,
         "a young landmark found in less than this share of the frames that should show it is removed");
-  field("probation_keyframes", o.probation_keyframes, 1, 20, "keyframes during which a landmark is young");
+  field("probation_keyframes", o.probation_keyframes, 2, 20, "keyframes during which a landmark is young");
   field("min_observations", o.min_observations, 1, 10,
         "keyframes that must have observed a landmark when its probation ends");
   field("redundant_share", o.redundant_share, 0.5, 1.0,

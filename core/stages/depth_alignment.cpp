@@ -9,6 +9,7 @@ namespace {
 
 constexpr int min_samples = 150;
 constexpr double agreeing_share = 0.6;
+constexpr double wide_gate_m = 10.0;  // whatever lies elsewhere is a contradiction, not a missing match
 // Neighbouring samples err together (the sensor's noise is smooth, its calibration wrong everywhere alike): all of
 // them count as this many independent ones.
 constexpr double effective_samples = 60;
@@ -66,7 +67,6 @@ void DepthAligner::count(const std::vector<PointToPlane>& rows, const Se3& pose,
 
 DepthAlignment DepthAligner::judge(const DepthGrid& now, const SurfaceReference& reference,
                                    const Se3& world_from_camera) const {
-  constexpr double wide_gate_m = 10.0;  // whatever lies elsewhere is a contradiction, not a missing match
   DepthAlignment result;
   result.solution.world_from_camera = world_from_camera;
   count(associate(now, reference, world_from_camera, wide_gate_m), world_from_camera, result);
@@ -95,7 +95,7 @@ DepthAlignment DepthAligner::align(const DepthGrid& now, const SurfaceReference&
     result.solution = solve_pose(Intrinsics::of(camera_), pose, features, weighted, prior, options);
     pose = result.solution.world_from_camera;
   }
-  count(rows, pose, result);
+  count(associate(now, reference, pose, wide_gate_m), pose, result);
   return result;
 }
 

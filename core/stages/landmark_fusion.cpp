@@ -62,7 +62,13 @@ bool observes(const Landmark& landmark, KeyframeId keyframe) {
                      [keyframe](const Observation& o) { return o.keyframe == keyframe; });
 }
 
-void merge_or_observe(const Sight& sight, KeyframeId keyframe, Draft& draft) {
+// One point seen twice, not a near and a far one along a ray: as far apart as two readings of one depth may be.
+bool same_place(const Camera& camera, const Keyframe& seen_from, const Landmark& a, const Landmark& b) {
+  const double depth_m = (seen_from.world_from_camera.inverse() * a.point_in_world).z();
+  return (a.point_in_world - b.point_in_world).norm() < 6.0 * camera.depth_noise.feature_sigma_m(depth_m);
+}
+
+void merge_or_observe(const Camera& camera, const Sight& sight, KeyframeId keyframe, Draft& draft) {
   const Map& map = draft.map();
   const LandmarkId present =
       map.keyframes().find(keyframe)->landmarks[static_cast<std::size_t>(sight.feature)];
@@ -73,6 +79,7 @@ void merge_or_observe(const Sight& sight, KeyframeId keyframe, Draft& draft) {
     return;
   }
   const Landmark& other = *map.landmarks().find(present);
+  if (!same_place(camera, *map.keyframes().find(keyframe), *landmark, other)) return;
   const bool keep_present = other.observations.size() >= landmark->observations.size();
   draft.record(keep_present ? MergeLandmark{sight.landmark, present}
                             : MergeLandmark{present, sight.landmark});
@@ -114,7 +121,7 @@ void fuse_into_neighbours(const Camera& camera, const ScalePyramid& pyramid, Key
     }
     const Keyframe& neighbour = *draft.map().keyframes().find(neighbour_id);
     for (const Sight& sight : look_for(camera, pyramid, draft.map(), neighbour, candidates, {})) {
-      merge_or_observe(sight, neighbour_id, draft);
+      merge_or_observe(camera, sight, neighbour_id, draft);
     }
   }
 }

@@ -89,6 +89,21 @@ TEST_F(LandmarkFusionTest, WhereDepthDisagreesTheyStayTwo) {
   EXPECT_EQ(landmark_of(map, right_, 3), of_right);
 }
 
+// Features without depth have nothing to say; then the landmarks must, by where they are.
+TEST_F(LandmarkFusionTest, ANearAndAFarPointOfOneRayStayTwo) {
+  change_left(3, 0);
+  const LandmarkId of_left = add(left_, 3, 0.5 * points_[3]), of_right = add(right_, 3);
+  const Map map = fused();
+  EXPECT_TRUE(map.landmarks().contains(of_left));
+  EXPECT_TRUE(map.landmarks().contains(of_right));
+}
+
+TEST_F(LandmarkFusionTest, WithoutDepthTwoOfTheSamePlaceBecomeOne) {
+  change_left(3, 0);
+  const LandmarkId of_left = add(left_, 3, 0.02 * points_[3]), of_right = add(right_, 3);
+  EXPECT_EQ(fused().landmarks().resolve(of_right), of_left);
+}
+
 TEST_F(LandmarkFusionTest, DepthWithinNoiseAgrees) {
   change_left(3, static_cast<float>(points_[3].z() - 0.04));
   const LandmarkId of_left = add(left_, 3), of_right = add(right_, 3);

@@ -35,7 +35,6 @@ bool project_landmark(const Camera& camera, const ScalePyramid& pyramid, const S
   view.projection.min_level = std::max(0, level - 1);
   view.projection.max_level = std::min(pyramid.levels - 1, level + 1);
   view.projection.descriptor = &appearance.descriptor;
-  view.projection.inverse_depth = static_cast<float>(1.0 / p.z());
   return true;
 }
 

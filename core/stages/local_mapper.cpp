@@ -64,7 +64,8 @@ std::vector<KeyframeId> LocalMapper::neighbours_of(const Map& map, KeyframeId ke
   constexpr int min_shared = 10;
   std::vector<KeyframeId> result;
   if (const auto& link = map.keyframes().find(keyframe)->tracked_link) {
-    if (map.keyframes().contains(link->to)) result.push_back(link->to);
+    const auto living = map.reanchor({link->to, Se3{}});
+    if (living && living->keyframe != keyframe) result.push_back(living->keyframe);
   }
   for (const auto& [id, shared] : map.covisible(keyframe, min_shared)) {
     if (static_cast<int>(result.size()) >= count) break;

@@ -11,7 +11,7 @@ namespace vsgraphs {
 class MotionModel {
  public:
   // Constant velocity from the last two known poses, scaled by time; the last pose where only one is known.
-  // The twist is bounded to one step's worth of the fastest believable motion.
+  // Extrapolates over half a second at the most.
   Se3 predict(const Se3& world_from_last, double seconds) const {
     if (!twist_per_s_) return world_from_last;
     return world_from_last.retract(*twist_per_s_ * std::min(seconds, max_extrapolation_s));
@@ -21,13 +21,8 @@ class MotionModel {
     if (seconds <= 0) return;
     twist_per_s_ = (world_from_previous.inverse() * world_from_now).log() / seconds;
   }
-  // While coasting, believe the old velocity less and less.
-  void fade() {
-    if (twist_per_s_) *twist_per_s_ *= 0.7;
-  }
   void forget() { twist_per_s_.reset(); }
   bool known() const { return twist_per_s_.has_value(); }
-  double speed_m_per_s() const { return twist_per_s_ ? twist_per_s_->head<3>().norm() : 0.0; }
 
  private:
   // Beyond this a straight extrapolation is worth less than standing still.

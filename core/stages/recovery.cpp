@@ -26,8 +26,7 @@ std::optional<FramePose> Recovery::from_recent(const Map& map, const FeatureSet&
   return best;
 }
 
-std::optional<FramePose> Recovery::from_anywhere(const Map& map, const FeatureSet& now,
-                                                 std::int64_t frame_index, FrameMatches& matches) {
+std::vector<KeyframeId> Recovery::likely_places(const Map& map, const FeatureSet& now) const {
   std::vector<KeyframeId> keyframes;
   std::vector<Place> places;
   map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
@@ -36,13 +35,18 @@ std::optional<FramePose> Recovery::from_anywhere(const Map& map, const FeatureSe
   });
   PlaceOptions place_options;
   place_options.max_candidates = options_.max_candidates;
+  std::vector<KeyframeId> likely;
   for (const PlaceCandidate& candidate : find_place_candidates(now, places, place_options)) {
-    const Keyframe& keyframe = *map.keyframes().find(keyframes[static_cast<std::size_t>(candidate.id)]);
-    const auto pose = align(map, {keyframe.features.get(), keyframe.landmarks, keyframe.world_from_camera},
-                            now, frame_index, options_.min_relocalisation_inliers, matches);
-    if (pose) return pose;
+    likely.push_back(keyframes[static_cast<std::size_t>(candidate.id)]);
   }
-  return std::nullopt;
+  return likely;
+}
+
+std::optional<FramePose> Recovery::from_keyframe(const Map& map, KeyframeId id, const FeatureSet& now,
+                                                 std::int64_t frame_index, FrameMatches& matches) const {
+  const Keyframe& keyframe = *map.keyframes().find(id);
+  return align(map, {keyframe.features.get(), keyframe.landmarks, keyframe.world_from_camera}, now,
+               frame_index, options_.min_relocalisation_inliers, matches);
 }
 
 std::optional<FramePose> Recovery::align(const Map& map, const Source& source, const FeatureSet& now,

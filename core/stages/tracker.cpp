@@ -38,33 +38,52 @@ TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, in
   extract(frame, trace);
   if (!last_) return start(snapshot);
   const Map& map = *snapshot;
+  last_->pose = *map.reanchor(last_->pose);
   const double seconds = now_.timestamp_s - last_->timestamp_s;
-  const Se3 world_from_last = *map.resolve(last_->pose);
-  last_world_ = world_from_last;
-  const Se3 predicted = motion_.predict(world_from_last, seconds);
+  last_world_ = *map.resolve(last_->pose);
+  predicted_ = motion_.predict(*last_world_, seconds);
   adopt_landmarks_of_own_keyframe(map);
+  visible_now_.clear();
 
-  std::optional<FramePose> pose;
-  TrackStatus status = lost_ ? TrackStatus::relocalised : TrackStatus::ok;
+  const bool was_lost = lost_;
+  std::optional<FramePose> pose = was_lost ? relocalise(map, seconds, trace) : follow(map, seconds, trace);
+  if (!pose) return coast_or_lose(map);
+  return finish(snapshot, *pose, was_lost ? TrackStatus::relocalised : TrackStatus::ok, backlog);
+}
+
+std::optional<FramePose> Tracker::follow(const Map& map, double seconds, TraceSink* trace) {
   bool guessed = false;  // found without prediction: to be checked against the surfaces
-  pose = match_recent(map, predicted, guessed, trace);
-  if (!pose && lost_) {
-    const Span span(trace, "relocalise");
-    pose = recovery_.from_anywhere(map, *now_.features, now_.index, matches_);
-    guessed = pose.has_value();
-  }
+  std::optional<FramePose> pose = match_recent(map, guessed, trace);
   if (pose) {
     const Span span(trace, "match_local_map");
     pose = refine_on_local_map(map, *pose);
   }
   if (pose && guessed && !surfaces_agree(map, *pose)) pose.reset();
-  if (pose && lost_ && pose->inliers < options_.recovery.min_relocalisation_inliers) pose.reset();
-  if (pose && !believable(world_from_last, predicted, pose->world_from_camera, seconds)) pose.reset();
-  if (!lost_ && (!pose || pose->inliers < options_.few_inliers)) {
+  if (pose && !believable(pose->world_from_camera, seconds)) pose.reset();
+  if (!pose || pose->inliers < options_.few_inliers) {
     const Span span(trace, "align_surfaces");
-    pose = align_surfaces(map, pose, predicted, seconds);
+    pose = align_surfaces(map, pose, seconds);
   }
-  return pose ? finish(snapshot, *pose, status, backlog) : coast_or_lose(map, predicted);
+  return pose;
+}
+
+// Whatever might be the place is tried to the end: the last frame's surroundings first, then what looks most alike.
+std::optional<FramePose> Tracker::relocalise(const Map& map, double seconds, TraceSink* trace) {
+  const Span span(trace, "relocalise");
+  const auto accept = [&](std::optional<FramePose> pose) {
+    if (pose) pose = refine_on_local_map(map, *pose);
+    const bool good = pose && pose->inliers >= options_.recovery.min_relocalisation_inliers &&
+                      surfaces_agree(map, *pose) && believable(pose->world_from_camera, seconds);
+    return good ? pose : std::nullopt;
+  };
+  auto pose = accept(recovery_.from_recent(map, *now_.features, now_.index, *last_->features,
+                                           last_->landmarks, *last_world_, last_->pose.keyframe, matches_));
+  if (pose) return pose;
+  for (const KeyframeId place : recovery_.likely_places(map, *now_.features)) {
+    pose = accept(recovery_.from_keyframe(map, place, *now_.features, now_.index, matches_));
+    if (pose) return pose;
+  }
+  return std::nullopt;
 }
 
 void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
@@ -113,8 +132,7 @@ void Tracker::adopt_landmarks_of_own_keyframe(const Map& map) {
 
 // A search that is too narrow for the step finds coincidences, so a poor result is not the end: wider searches and
 // matching without prediction are tried, and the pose that explains most matches wins.
-std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predicted, bool& guessed,
-                                               TraceSink* trace) {
+std::optional<FramePose> Tracker::match_recent(const Map& map, bool& guessed, TraceSink* trace) {
   constexpr int plenty = 50;
   std::optional<FramePose> best;
   FrameMatches best_matches;
@@ -124,11 +142,11 @@ std::optional<FramePose> Tracker::match_recent(const Map& map, const Se3& predic
     best_matches = matches_;
     guessed = guess;
   };
-  if (!lost_) {
+  {
     const Span span(trace, "match_motion");
     for (const double widening : {1.0, 2.5}) {
       const double share =
-          match_last_frame(map, predicted, widening * options_.search_radius_px, keep_if_better);
+          match_last_frame(map, predicted_, widening * options_.search_radius_px, keep_if_better);
       if (best && best->inliers >= plenty && share >= 0.6) break;
     }
   }
@@ -233,15 +251,14 @@ void Tracker::project_local_map(const Map& map, const Se3& world_from_camera) {
   std::sort(matched.begin(), matched.end());
   projections_.clear();
   views_.clear();
+  visible_now_.clear();
   for (const LandmarkId id : local_map_.landmarks()) {
     LandmarkView view;
     if (!project_landmark(camera_, pyramid_, camera_from_world, id, *map.landmarks().find(id),
                           options_.local_search_radius_px, view)) {
       continue;
     }
-    Sighting& sighting = sightings_[id];
-    sighting.landmark = id;
-    ++sighting.visible;
+    visible_now_.push_back(id);
     if (std::binary_search(matched.begin(), matched.end(), id)) continue;
     views_.push_back(view);
     projections_.push_back(view.projection);
@@ -250,32 +267,36 @@ void Tracker::project_local_map(const Map& map, const Se3& world_from_camera) {
 
 // A camera in a hand or on a robot cannot go faster than so much, nor change its velocity at once: where the motion
 // is known, a pose far from the prediction is a place that looks alike.
-bool Tracker::believable(const Se3& world_from_last, const Se3& predicted, const Se3& world_from_now,
-                         double seconds) const {
+bool Tracker::believable(const Se3& world_from_now, double seconds) const {
   if (!world_from_now.finite()) return false;
   constexpr double slack_m = 0.1, slack_rad = 0.15;
-  const Se3 step = world_from_last.inverse() * world_from_now;
+  const Se3 step = last_world_->inverse() * world_from_now;
   if (step.translation().norm() > options_.max_speed_m_per_s * seconds + slack_m ||
       rotation_angle(step.rotation()) > options_.max_turn_rad_per_s * seconds + slack_rad) {
     return false;
   }
   if (lost_ || !motion_.known()) return true;
-  const Se3 surprise = predicted.inverse() * world_from_now;
+  const Se3 surprise = predicted_.inverse() * world_from_now;
   return surprise.translation().norm() <= options_.max_velocity_change_m_per_s * seconds + slack_m &&
          rotation_angle(surprise.rotation()) <= options_.max_turn_change_rad_per_s * seconds + slack_rad;
+}
+
+void Tracker::note_sightings() {
+  for (const Correspondence& c : matches_.all()) {
+    if (!c.landmark.valid()) continue;
+    now_.landmarks[static_cast<std::size_t>(c.feature)] = c.landmark;
+    ++sightings_[c.landmark].found;
+  }
+  // A frame too dark or too blurred to show anything says nothing against the landmarks.
+  if (matches_.size() < options_.min_inliers) return;
+  for (const LandmarkId id : visible_now_) ++sightings_[id].visible;
 }
 
 TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status,
                              int backlog) {
   const Map& map = *snapshot;
-  for (const Correspondence& c : matches_.all()) {
-    if (!c.landmark.valid()) continue;
-    now_.landmarks[static_cast<std::size_t>(c.feature)] = c.landmark;
-    Sighting& sighting = sightings_[c.landmark];
-    sighting.landmark = c.landmark;
-    ++sighting.found;
-  }
-  const KeyframeId anchor = choose_anchor(map);
+  note_sightings();
+  const KeyframeId anchor = choose_anchor();
   const Se3& world_from_anchor = map.keyframes().find(anchor)->world_from_camera;
   now_.pose = {anchor, world_from_anchor.inverse() * pose.world_from_camera};
   const double seconds = now_.timestamp_s - last_->timestamp_s;
@@ -308,14 +329,14 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
 
 // The keyframe the frame hangs on: the one that held its pose. A handful of votes is no hold, and may come from a
 // place that only looks alike.
-KeyframeId Tracker::choose_anchor(const Map& map) const {
+KeyframeId Tracker::choose_anchor() const {
   constexpr int enough_votes = 15;
   if (now_.surface_reference.valid()) return now_.surface_reference;
   if (local_map_.reference_votes() >= enough_votes) return local_map_.reference();
-  return map.reanchor(last_->pose)->keyframe;
+  return last_->pose.keyframe;
 }
 
-TrackedFrame Tracker::coast_or_lose(const Map& map, const Se3& predicted) {
+TrackedFrame Tracker::coast_or_lose(const Map& map) {
   ++unmeasured_frames_;
   const bool long_ago = now_.timestamp_s - last_measured_s_ > options_.coast_s;
   if (lost_ || (long_ago && unmeasured_frames_ > options_.coast_frames)) {
@@ -326,8 +347,8 @@ TrackedFrame Tracker::coast_or_lose(const Map& map, const Se3& predicted) {
   // The last measured frame stays the one to match against; only the prediction moves on.
   const auto anchor = *map.reanchor(last_->pose);
   now_.pose = {anchor.keyframe,
-               map.keyframes().find(anchor.keyframe)->world_from_camera.inverse() * predicted};
-  return report(TrackStatus::coasting, predicted);
+               map.keyframes().find(anchor.keyframe)->world_from_camera.inverse() * predicted_};
+  return report(TrackStatus::coasting, predicted_);
 }
 
 std::vector<LandmarkId> Tracker::matched_landmarks() const {
@@ -375,7 +396,12 @@ std::shared_ptr<const KeyframeRequest> Tracker::make_request(const AnchoredPose&
   request->surface = now_.surface;
   request->tracked_link = now_.tracked_link;
   request->landmarks = now_.landmarks;
-  for (const auto& [id, sighting] : sightings_) request->sightings.push_back(sighting);
+  request->sightings.reserve(sightings_.size());
+  for (const auto& [id, sighting] : sightings_) {
+    request->sightings.push_back({id, sighting.visible, sighting.found});
+  }
+  std::sort(request->sightings.begin(), request->sightings.end(),
+            [](const Sighting& a, const Sighting& b) { return a.landmark < b.landmark; });
   sightings_.clear();
   last_keyframe_pose_ = pose;
   last_keyframe_s_ = now_.timestamp_s;

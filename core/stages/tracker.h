@@ -8,8 +8,8 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
+#include <unordered_map>
 
 #include "core/base/options.h"
 #include "core/base/trace.h"
@@ -88,8 +88,9 @@ class Tracker {
 
   void extract(const RgbdFrame& frame, TraceSink* trace);
   TrackedFrame start(const Snapshot& snapshot);
-  std::optional<FramePose> match_recent(const Map& map, const Se3& predicted, bool& guessed,
-                                        TraceSink* trace);
+  std::optional<FramePose> follow(const Map& map, double seconds, TraceSink* trace);
+  std::optional<FramePose> relocalise(const Map& map, double seconds, TraceSink* trace);
+  std::optional<FramePose> match_recent(const Map& map, bool& guessed, TraceSink* trace);
   double match_last_frame(const Map& map, const Se3& predicted, double radius_px,
                           const std::function<void(const std::optional<FramePose>&, bool)>& found_pose);
   void match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks);
@@ -97,7 +98,7 @@ class Tracker {
   void project_local_map(const Map& map, const Se3& world_from_camera);
   // What landmarks are too few to tell, surfaces may. Returns the better pose, or `pose` where they do not.
   std::optional<FramePose> align_surfaces(const Map& map, const std::optional<FramePose>& pose,
-                                          const Se3& predicted, double seconds);
+                                          double seconds);
   std::optional<FramePose> hold_by_surfaces(const SurfaceReference& reference, const Se3& guess,
                                             const PosePriorTerm& prior, double seconds);
   SurfaceReference choose_surface(const Map& map, const Se3& world_from_camera);
@@ -106,12 +107,12 @@ class Tracker {
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
   const DepthGrid& surface_now() const { return *now_.surface; }
-  bool believable(const Se3& world_from_last, const Se3& predicted, const Se3& world_from_now,
-                  double seconds) const;
+  bool believable(const Se3& world_from_now, double seconds) const;
+  void note_sightings();
   void adopt_landmarks_of_own_keyframe(const Map& map);
-  KeyframeId choose_anchor(const Map& map) const;
+  KeyframeId choose_anchor() const;
   TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);
-  TrackedFrame coast_or_lose(const Map& map, const Se3& predicted);
+  TrackedFrame coast_or_lose(const Map& map);
   std::vector<LandmarkId> matched_landmarks() const;
   KeyframeEvidence gather_evidence(const Map& map, const Se3& world_from_camera, int backlog) const;
   std::shared_ptr<const KeyframeRequest> make_request(const AnchoredPose& pose, bool first);
@@ -130,10 +131,19 @@ class Tracker {
   FrameMatches matches_;
   std::vector<ProjectedPoint> projections_;
   std::vector<LandmarkView> views_;
-  std::map<LandmarkId, Sighting> sightings_;
+  // What happened to each landmark since the last keyframe request; put in order when handed over.
+  struct Count {
+    std::uint32_t visible = 0, found = 0;
+  };
+  struct HashId {
+    std::size_t operator()(LandmarkId id) const { return id.index ^ (std::size_t{id.generation} << 32); }
+  };
+  std::unordered_map<LandmarkId, Count, HashId> sightings_;
+  std::vector<LandmarkId> visible_now_;  // landmarks this frame should show
 
   std::optional<FrameState> last_;  // the last frame that had a pose
   std::optional<Se3> last_world_;   // its pose in the present snapshot's world
+  Se3 predicted_;                   // where the motion model puts this frame
   FrameState now_;
   double last_measured_s_ = 0;  // when a pose was last measured, not coasted
   int unmeasured_frames_ = 0;

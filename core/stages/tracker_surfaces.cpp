@@ -19,10 +19,9 @@ PosePriorTerm Tracker::motion_prior(const Se3& predicted, double seconds) const 
 SurfaceReference Tracker::choose_surface(const Map& map, const Se3& world_from_camera) {
   constexpr std::uint32_t newest = 4;
   constexpr double last_frame_handicap = 0.7;
-  const AnchoredPose last = *map.reanchor(last_->pose);
-  SurfaceReference best{last.keyframe, *last_world_, last_->surface.get()};
+  SurfaceReference best{last_->pose.keyframe, *last_world_, last_->surface.get()};
   double most = last_frame_handicap * aligner_.judge(surface_now(), best, world_from_camera).associated;
-  std::vector<KeyframeId> candidates{last.keyframe, local_map_.reference()};
+  std::vector<KeyframeId> candidates{last_->pose.keyframe, local_map_.reference()};
   const std::uint32_t bound = map.keyframes().index_bound();
   for (std::uint32_t back = 1; back <= std::min(bound, newest); ++back) {
     candidates.push_back(map.keyframes().at_index(bound - back));
@@ -40,11 +39,11 @@ SurfaceReference Tracker::choose_surface(const Map& map, const Se3& world_from_c
 }
 
 std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::optional<FramePose>& pose,
-                                                 const Se3& predicted, double seconds) {
-  const Se3 guess = pose ? pose->world_from_camera : predicted;
+                                                 double seconds) {
+  const Se3 guess = pose ? pose->world_from_camera : predicted_;
   const SurfaceReference reference = choose_surface(map, guess);
 
-  const PosePriorTerm prior = motion_prior(predicted, seconds);
+  const PosePriorTerm prior = motion_prior(predicted_, seconds);
   if (!pose) {
     // Surfaces alone bring the camera near; then the landmarks around can be looked for.
     const DepthAlignment first = aligner_.align(surface_now(), reference, guess, {}, prior);
@@ -66,8 +65,7 @@ std::optional<FramePose> Tracker::hold_by_surfaces(const SurfaceReference& refer
   const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
   const DepthAlignment aligned = aligner_.align(surface_now(), reference, guess, observations, prior);
   const Se3& pose = aligned.solution.world_from_camera;
-  if (!aligned.convincing() || !believable(*last_world_, prior.world_from_camera, pose, seconds))
-    return std::nullopt;
+  if (!aligned.convincing() || !believable(pose, seconds)) return std::nullopt;
   std::vector<std::uint8_t> inlier(observations.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned.solution.fit[i]);
   matches_.keep(inlier);

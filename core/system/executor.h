@@ -31,7 +31,7 @@ class Executor {
 
 std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera);
 std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera);
-// Follows config.system.replay. track() and finish() throw InputError when the run departs from it.
+// Follows config.system.replay. track() and finish() throw RunError when the run departs from it.
 std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera);
 
 }  // namespace vsgraphs

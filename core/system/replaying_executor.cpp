@@ -29,10 +29,10 @@ class ReplayingExecutor : public Executor {
   }
 
   void finish() override {
-    require_input(next_frame_ == schedule_.frames.size(),
-                  "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
-                      " frames, but only " + std::to_string(next_frame_) +
-                      " of them came; replay it on the sequence it was recorded on");
+    require_run(next_frame_ == schedule_.frames.size(),
+                "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
+                    " frames, but only " + std::to_string(next_frame_) +
+                    " of them came; replay it on the sequence it was recorded on");
     advance_to(schedule_.edits.size());
   }
 
@@ -46,17 +46,20 @@ class ReplayingExecutor : public Executor {
     while (owner_.version() < version) {
       const EditEvent& event = schedule_.edits.at(owner_.version());
       if (event.kind == EditEvent::Kind::insert) {
-        require_input(!waiting_.empty() && waiting_.front()->frame_index == event.frame, departed(event));
+        require_run(!waiting_.empty() && waiting_.front()->frame_index == event.frame, departed(event));
         owner_.insert(*waiting_.front());
         waiting_.pop_front();
       } else {
         int left = event.iterations;
         owner_.refine([&left] { return left-- <= 0; });
       }
-      require_input(owner_.edits().back() == event, departed(event));
+      require_run(owner_.edits().back() == event, departed(event));
     }
   }
 
+  static void require_run(bool ok, const std::string& message) {
+    if (!ok) throw RunError(message);
+  }
   static std::string departed(const EditEvent& event) {
     return "replay: the run departs from the schedule at frame " + std::to_string(event.frame) +
            "; it was recorded with another sequence, configuration or build";

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <limits>
 
 #include "core/base/check.h"
@@ -34,6 +35,9 @@ Slam::Slam(const Config& config, const Camera& camera)
 Slam::~Slam() = default;
 
 TrackedFrame Slam::track(RgbdFrame frame) {
+  const std::unique_lock lock(frames_mutex_, std::try_to_lock);
+  require_input(lock.owns_lock(),
+                "track() was called while another thread was in it; frames come one by one");
   require_input(!finished_, "track() was called after finish(); make a new Slam for a new run");
   require_input(std::isfinite(frame.timestamp_s), "the frame's timestamp is not a finite number");
   require_input(frame.timestamp_s > last_timestamp_s_, "the frame's timestamp " + at_time(frame.timestamp_s) +
@@ -64,17 +68,34 @@ void Slam::note_status(const TrackedFrame& frame) {
 }
 
 Snapshot Slam::snapshot() const { return executor_->snapshot(); }
-std::int64_t Slam::backlog() const { return executor_->backlog(); }
-std::vector<const SpanRecorder*> Slam::spans() const { return executor_->spans(); }
+
+std::int64_t Slam::backlog() const {
+  const std::lock_guard lock(frames_mutex_);
+  return executor_->backlog();
+}
+
+std::vector<const SpanRecorder*> Slam::spans() const {
+  const std::lock_guard lock(frames_mutex_);
+  return finished_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
+}
 
 void Slam::finish() {
+  const std::lock_guard lock(frames_mutex_);
   if (finished_) return;
   finished_ = true;
-  executor_->finish();
+  std::exception_ptr failure;
+  try {
+    executor_->finish();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  // The schedule of a run that failed is what one wants to look at.
   if (!config_.system.schedule_out.empty()) executor_->schedule().write(config_.system.schedule_out);
+  if (failure) std::rethrow_exception(failure);
 }
 
 std::vector<TimedPose> Slam::trajectory() const {
+  const std::lock_guard lock(frames_mutex_);
   const Snapshot map = snapshot();
   // A frame that became a keyframe is where its keyframe is.
   std::map<std::int64_t, Se3> keyframe_pose;
@@ -92,11 +113,12 @@ std::vector<TimedPose> Slam::trajectory() const {
 }
 
 RunStatistics Slam::statistics() const {
+  const std::lock_guard lock(frames_mutex_);
   RunStatistics s;
   s.frames = frames_;
   s.tracked = static_cast<std::int64_t>(records_.size());
   s.waited_s = executor_->waited_s();
-  s.stages = stage_statistics(executor_->spans());
+  if (finished_) s.stages = stage_statistics(executor_->spans());
   s.warnings = warnings_;
   return s;
 }

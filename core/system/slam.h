@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -43,13 +44,15 @@ class Slam {
   // Keyframes waiting for the mapper.
   std::int64_t backlog() const;
 
-  // Ends the work that is under way; further calls of track() are an error. May be called twice.
+  // Ends the work that is under way; further calls of track() are an error. May be called twice. Throws what went
+  // wrong in a worker, RunError where a replay departed; the trajectory so far can still be asked for.
   void finish();
 
   // Poses of all frames that have one, in order, corrected by everything learned since.
   std::vector<TimedPose> trajectory() const;
-  // The following are complete after finish().
+  // Any time; the stages are there after finish() alone, as the workers write them until then.
   RunStatistics statistics() const;
+  // Empty before finish().
   std::vector<const SpanRecorder*> spans() const;
 
  private:
@@ -60,6 +63,9 @@ class Slam {
   };
   void note_status(const TrackedFrame& frame);
 
+  // Held while a frame is tracked and while its records are read: a second caller of track() is told so, readers
+  // wait for the frame to end.
+  mutable std::mutex frames_mutex_;
   Config config_;
   std::unique_ptr<Executor> executor_;
   std::vector<FrameRecord> records_;

@@ -60,8 +60,9 @@ class ThreadedExecutor : public Executor {
         owner_.insert(**request);
         owner_.refine([this] { return requests_.size() >= 2; });
       }
-    } catch (...) {
-      failure_ = std::current_exception();
+    } catch (const std::exception& error) {
+      // Whatever it was, it was not the frame the tracker is at: it must not look like bad input of that frame.
+      failure_ = std::make_exception_ptr(std::runtime_error(std::string("mapping failed: ") + error.what()));
       requests_.close();
     }
     cell_.close();

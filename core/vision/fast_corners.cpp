@@ -99,7 +99,9 @@ inline void append_peaks(const std::uint8_t* above, const std::uint8_t* here, co
 // area the middle one need not be the largest: then there is no peak to speak of.
 float parabola_peak(int before, int here, int after) {
   const int bend = 2 * here - before - after;
-  return bend > 0 && here >= before && here >= after ? 0.5f * static_cast<float>(after - before) / static_cast<float>(bend) : 0.0f;
+  return bend > 0 && here >= before && here >= after
+             ? 0.5f * static_cast<float>(after - before) / static_cast<float>(bend)
+             : 0.0f;
 }
 
 }  // namespace

@@ -5,5 +5,9 @@ class InputError(ValueError):
     """What the user gave cannot be used: a file, an option, an array of the wrong shape."""
 
 
+class RunError(RuntimeError):
+    """A run cannot go on as it was asked to: a replay departs from its schedule."""
+
+
 class FrameError(InputError):
     """One frame of a sequence cannot be read (missing, truncated, wrong size). The others still can."""

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Iterator
 
-from vsgraphs.errors import InputError
+from vsgraphs.errors import InputError, RunError
 
 EXIT_MISTAKE = 2  # something the user can cure
 EXIT_DEFECT = 1  # something only we can cure
@@ -48,7 +48,7 @@ def told() -> Iterator[None]:
 
 def is_mistake(error: Exception) -> bool:
     """Whether the user can cure it: our InputError, the compiled module's, an unusable machine or file."""
-    if isinstance(error, InputError | ImportError | OSError):
+    if isinstance(error, InputError | RunError | ImportError | OSError):
         return True
     compiled = getattr(sys.modules.get("vsgraphs._core"), "InputError", InputError)
     return isinstance(error, compiled)

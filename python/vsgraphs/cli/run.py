@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -55,12 +56,13 @@ def run_sequence(request: RunRequest) -> int:
             stamps = [frame.timestamp for frame in frames]
             session = Session(slam, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
-            failure = _attempt(session)
+            failure = _attempt(session.run)
             loaded.close()
             progress.clear()
             if session.tally.interrupted:
                 print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
-            slam.finish()
+            finishing = _attempt(slam.finish)
+            failure = failure or finishing  # the first trouble is the one to tell
             report = _write(_outcome(request, sequence, config, slam, session.tally, began), failure)
     if failure is not None:
         raise failure
@@ -78,10 +80,10 @@ def _check_schedule_out(request: RunRequest) -> None:
         raise InputError(f"--schedule-out {path}: {folder} is not a directory that can be written to")
 
 
-def _attempt(session: Session) -> Exception | None:
-    """Runs the session; hands back an unexpected error: what was tracked before is worth keeping."""
+def _attempt(step: Callable[[], object]) -> Exception | None:
+    """Does a step; hands back its error, as what was tracked before is worth keeping."""
     try:
-        session.run()
+        step()
     except Exception as error:
         return error
     return None
