@@ -180,6 +180,15 @@ TEST_F(TrackerTest, AJumpIsNotBelieved) {
   expect_at(after, 48);
 }
 
+// 20 px back are 0.15 m, slow enough for a camera, but not for one that went the other way a frame ago.
+TEST_F(TrackerTest, ASuddenTurnBackIsNotBelieved) {
+  slide(15);
+  EXPECT_EQ(track(15 * frame_s, 42 - 20).status, TrackStatus::coasting);
+  const TrackedFrame after = track(16 * frame_s, 48);
+  EXPECT_EQ(after.status, TrackStatus::ok);
+  expect_at(after, 48);
+}
+
 TEST_F(TrackerTest, TheSameStepInASecondIsFollowed) {
   slide(15);
   const TrackedFrame far = track(14 * frame_s + 1.0, 42 + 90);
