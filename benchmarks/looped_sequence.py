@@ -36,7 +36,8 @@ def main() -> None:
     print("| round | frames | without keyframe, ms | with keyframe, ms | keyframes | landmarks |")
     print("|---|---|---|---|---|---|")
     for number in range(1, options.rounds + 1):
-        plain, with_keyframe = [], []
+        plain: list[float] = []
+        with_keyframe: list[float] = []
         for frame in frames + frames[::-1]:
             rgb, depth = frame.load()
             stamp += 1.0 / sequence.camera.fps
