@@ -80,17 +80,22 @@ ReprojectionObservation measure(const MeasurementModel& model, const Feature& fe
 void build_landmark_factors(const Map& map, const Window& window, const MeasurementModel& model,
                             WindowProblem& problem) {
   const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
+  std::vector<ReprojectionObservation> rows;
   for (const LandmarkId id : window.landmarks) {
     const Landmark& landmark = *map.landmarks().find(id);
     const int index = static_cast<int>(problem.bundle.landmarks.size());
-    problem.bundle.landmarks.push_back(landmark.point_in_world);
-    problem.landmark_of_point.push_back(id);
+    rows.clear();
     for (const Observation& o : landmark.observations) {
       const int pose = pose_of[o.keyframe.index];
       if (pose < 0) continue;
       const Feature& feature = (*map.keyframes().find(o.keyframe)->features)[o.feature];
-      problem.bundle.observations.push_back(measure(model, feature, pose, index));
+      rows.push_back(measure(model, feature, pose, index));
     }
+    // Its other observers did not fit into the window: alone, a ray holds nothing.
+    if (rows.size() < 2) continue;
+    problem.bundle.landmarks.push_back(landmark.point_in_world);
+    problem.landmark_of_point.push_back(id);
+    problem.bundle.observations.insert(problem.bundle.observations.end(), rows.begin(), rows.end());
   }
 }
 

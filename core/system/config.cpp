@@ -168,6 +168,9 @@ std::vector<OptionDescription> Config::describe_all() const {
 }
 
 void Config::validate() const {
+  // Fields are public: what was not set through set() is held to the same ranges.
+  Config checked;
+  for (const OptionDescription& option : describe_all()) checked.set(option.key, option.value);
   orb.validate();
   require_input(system.replay.empty() || system.schedule_out.empty(),
                 "system.replay and system.schedule_out exclude each other");

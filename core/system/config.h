@@ -58,7 +58,7 @@ class Config {
   void set(const std::string& key, const OptionValue& value);
   OptionValue get(const std::string& key) const;
   std::vector<OptionDescription> describe_all() const;
-  // What ranges alone cannot tell. Throws InputError.
+  // All ranges, and what ranges alone cannot tell. Throws InputError.
   void validate() const;
 
  private:

@@ -44,7 +44,9 @@ class ReplayingExecutor : public Executor {
  private:
   void advance_to(std::uint64_t version) {
     while (owner_.version() < version) {
-      const EditEvent& event = schedule_.edits.at(owner_.version());
+      require_run(owner_.version() < schedule_.edits.size(),
+                  "replay: the schedule ends before its last frame; it was cut off");
+      const EditEvent& event = schedule_.edits[owner_.version()];
       if (event.kind == EditEvent::Kind::insert) {
         require_run(!waiting_.empty() && waiting_.front()->frame_index == event.frame, departed(event));
         owner_.insert(*waiting_.front());
