@@ -29,7 +29,7 @@ struct TrackerOptions {
   double local_search_radius_px = 5;
   int local_keyframes = 20;
   int min_inliers = 20;
-  int few_inliers = 80;
+  int few_inliers = 120;
   int min_features_to_start = 100;
   double max_speed_m_per_s = 3.0;
   double max_turn_rad_per_s = 5.0;
