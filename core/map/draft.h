@@ -23,6 +23,12 @@ class Draft {
     record(AddLandmark{id, std::move(landmark)});
     return id;
   }
+  PlaneId add(MappedPlane plane) {
+    const PlaneId id = map_.planes().next_id();
+    plane.observations.clear();
+    record(AddPlane{id, std::move(plane)});
+    return id;
+  }
   void record(EditOperation operation) {
     map_.apply(operation);
     edit_.operations.push_back(std::move(operation));

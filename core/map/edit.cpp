@@ -35,6 +35,19 @@ class Fnv1a {
   }
   std::uint64_t value() const { return hash_; }
 
+  void plane(const AnchoredPlane& p) {
+    matrix(p.normal);
+    matrix(p.anchor);
+    number(p.offset_m);
+  }
+  void votes(const RoleVotes& votes) {
+    for (const float v : votes) number(static_cast<double>(v));
+  }
+  void observation(const PlaneObservation& o) {
+    id(o.keyframe);
+    word(o.patch);
+  }
+
   void operator()(const AddKeyframe& op) {
     id(op.id);
     word(static_cast<std::uint64_t>(op.keyframe.frame_index));
@@ -88,6 +101,49 @@ class Fnv1a {
     id(op.id);
     word((static_cast<std::uint64_t>(op.visible) << 32) | op.found);
   }
+  void operator()(const SetPatches& op) {
+    id(op.id);
+    word(op.patches->labelled);
+    for (const SurfacePatch& patch : op.patches->patches) {
+      plane(patch.plane);
+      matrix(patch.information);
+      votes(patch.votes);
+    }
+  }
+  void operator()(const AddPlane& op) {
+    id(op.id);
+    plane(op.plane.plane);
+    word(static_cast<std::uint64_t>(op.plane.role));
+    votes(op.plane.votes);
+  }
+  void operator()(const RemovePlane& op) { id(op.id); }
+  void operator()(const MergePlane& op) {
+    id(op.id);
+    id(op.into);
+  }
+  void operator()(const AddPlaneObservation& op) {
+    id(op.plane);
+    observation(op.observation);
+  }
+  void operator()(const RemovePlaneObservation& op) {
+    id(op.plane);
+    observation(op.observation);
+  }
+  void operator()(const MovePlane& op) {
+    id(op.id);
+    plane(op.plane);
+  }
+  void operator()(const ClassifyPlane& op) {
+    id(op.id);
+    word(static_cast<std::uint64_t>(op.role));
+    votes(op.votes);
+  }
+  void operator()(const PairFaces& op) {
+    id(op.id);
+    id(op.other);
+    number(op.thickness_m);
+  }
+  void operator()(const SetUp& op) { matrix(op.up_in_world); }
 
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;

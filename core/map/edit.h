@@ -9,6 +9,7 @@
 
 #include "core/map/keyframe.h"
 #include "core/map/landmark.h"
+#include "core/map/mapped_plane.h"
 
 namespace vsgraphs {
 
@@ -61,9 +62,58 @@ struct CountSightings {
   std::uint32_t found = 0;
 };
 
+// The planar pieces of a keyframe, or new ones in place of the old: plane observations of the old ones go.
+struct SetPatches {
+  KeyframeId id;
+  std::shared_ptr<const KeyframeSurfaces> patches;
+};
+struct AddPlane {
+  PlaneId id;
+  MappedPlane plane;  // without observations
+};
+struct RemovePlane {
+  PlaneId id;
+};
+// `id`'s observations and votes go to `into`; `id` redirects to `into`.
+struct MergePlane {
+  PlaneId id;
+  PlaneId into;
+};
+// Does nothing if the plane has it already or the keyframe has no such patch.
+struct AddPlaneObservation {
+  PlaneId plane;
+  PlaneObservation observation;
+};
+// A plane that loses its last observation goes too.
+struct RemovePlaneObservation {
+  PlaneId plane;
+  PlaneObservation observation;
+};
+struct MovePlane {
+  PlaneId id;
+  AnchoredPlane plane;
+};
+struct ClassifyPlane {
+  PlaneId id;
+  SurfaceRole role = SurfaceRole::undecided;
+  RoleVotes votes{};
+};
+// Makes two planes the faces of one wall; an invalid `other` parts `id` from whatever it was paired with.
+struct PairFaces {
+  PlaneId id;
+  PlaneId other;
+  double thickness_m = 0;
+};
+// Unit vector; the direction rooms stand in.
+struct SetUp {
+  Eigen::Vector3d up_in_world;
+};
+
 using EditOperation =
     std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
-                 RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings>;
+                 RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings, SetPatches,
+                 AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation, MovePlane,
+                 ClassifyPlane, PairFaces, SetUp>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

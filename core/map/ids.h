@@ -20,5 +20,6 @@ struct Id {
 
 using KeyframeId = Id<struct KeyframeTag>;
 using LandmarkId = Id<struct LandmarkTag>;
+using PlaneId = Id<struct PlaneTag>;
 
 }  // namespace vsgraphs

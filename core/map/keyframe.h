@@ -9,6 +9,7 @@
 #include "core/map/depth_grid.h"
 #include "core/map/features.h"
 #include "core/map/ids.h"
+#include "core/map/surface_patch.h"
 
 namespace vsgraphs {
 
@@ -26,6 +27,7 @@ struct Keyframe {
   Se3 world_from_camera;
   std::shared_ptr<const FeatureSet> features;  // never changes; shared with every snapshot
   std::shared_ptr<const DepthGrid> surface;    // likewise
+  std::shared_ptr<const KeyframeSurfaces> patches;  // planar pieces of `surface`; none before they were sought
   std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
 };
@@ -34,6 +36,7 @@ struct Keyframe {
 struct RetiredKeyframe {
   KeyframeId anchor;
   Se3 anchor_from_camera;
+  std::shared_ptr<const KeyframeSurfaces> patches;  // planes go on being where it saw them
 };
 
 // A camera pose tied to a keyframe, so that corrections of the keyframe move it for free.

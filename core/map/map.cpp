@@ -54,6 +54,7 @@ Snapshot Map::snapshot() {
   auto copy = std::make_shared<const Map>(*this);
   keyframes_.seal();
   landmarks_.seal();
+  planes_.seal();
   retired_.seal();
   return copy;
 }
@@ -70,7 +71,8 @@ void Map::apply_one(const RemoveKeyframe& op) {
   const Keyframe* keyframe = keyframes_.find(op.id);
   const Keyframe* anchor = keyframes_.find(op.anchor);
   if (!keyframe || !anchor || op.id == op.anchor) return;
-  *retired_.edit(op.id) = {op.anchor, anchor->world_from_camera.inverse() * keyframe->world_from_camera};
+  *retired_.edit(op.id) = {op.anchor, anchor->world_from_camera.inverse() * keyframe->world_from_camera,
+                          keyframe->patches};
   const std::vector<LandmarkId> observed = keyframe->landmarks;
   for (const LandmarkId landmark : observed) {
     if (landmark.valid()) apply_one(RemoveObservation{landmark, op.id});

@@ -10,6 +10,7 @@
 #include "core/map/edit.h"
 #include "core/map/keyframe.h"
 #include "core/map/landmark.h"
+#include "core/map/mapped_plane.h"
 #include "core/map/table.h"
 
 namespace vsgraphs {
@@ -22,15 +23,22 @@ class Map {
   // Small chunks for heavy values, large chunks for light ones: a copy-on-write clones a whole chunk.
   using Keyframes = Table<KeyframeId, Keyframe, 8, false>;
   using Landmarks = Table<LandmarkId, Landmark, 64>;
+  using Planes = Table<PlaneId, MappedPlane, 8>;
 
   const Keyframes& keyframes() const { return keyframes_; }
   const Landmarks& landmarks() const { return landmarks_; }
+  const Planes& planes() const { return planes_; }
+  // Unit vector against gravity; empty until ground and walls have agreed on it.
+  const std::optional<Eigen::Vector3d>& up_in_world() const { return up_in_world_; }
   std::uint64_t version() const { return version_; }
 
   // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
   std::optional<Se3> resolve(const AnchoredPose& pose) const;
   // The living keyframe that stands for `pose`'s anchor now, and the pose relative to it.
   std::optional<AnchoredPose> reanchor(AnchoredPose pose) const;
+
+  // The patch behind an observation, whether its keyframe lives or is retired; nullptr if there is none.
+  const SurfacePatch* patch(const PlaneObservation& observation) const;
 
   // Keyframes that share at least `min_shared` landmarks with `id`, most shared first (ties: lower id first).
   // Cost: one visit per observation of the keyframe's landmarks.
@@ -56,11 +64,23 @@ class Map {
   void apply_one(const MoveLandmark& op);
   void apply_one(const SetAppearance& op);
   void apply_one(const CountSightings& op);
+  void apply_one(const SetPatches& op);
+  void apply_one(const AddPlane& op);
+  void apply_one(const RemovePlane& op);
+  void apply_one(const MergePlane& op);
+  void apply_one(const AddPlaneObservation& op);
+  void apply_one(const RemovePlaneObservation& op);
+  void apply_one(const MovePlane& op);
+  void apply_one(const ClassifyPlane& op);
+  void apply_one(const PairFaces& op);
+  void apply_one(const SetUp& op);
   void detach(LandmarkId landmark, const Observation& observation);
 
   Keyframes keyframes_;
   Landmarks landmarks_;
+  Planes planes_;
   Table<KeyframeId, RetiredKeyframe, 32, false> retired_;
+  std::optional<Eigen::Vector3d> up_in_world_;
   std::uint64_t version_ = 0;
 };
 

@@ -22,7 +22,7 @@ class PlaneSeen final : public DenseFactor {
 
   bool evaluate(const VariableValues& values, bool with_jacobians, FactorRows& out) const override {
     const Se3& t = values.pose(variables()[0].index);
-    const PlaneVariable& plane = values.plane(variables()[1].index);
+    const AnchoredPlane& plane = values.plane(variables()[1].index);
     const Eigen::Vector3d normal = t.rotation().transpose() * plane.normal;
     out.residual.head<3>() = weight * (normal - normal_);
     out.residual[3] = weight * (plane.signed_distance(t.translation()) - distance_);
@@ -68,14 +68,14 @@ class Silent final : public DenseFactor {
   bool evaluate(const VariableValues&, bool, FactorRows&) const override { return false; }
 };
 
-PlaneVariable random_plane(Rng& rng) {
+AnchoredPlane random_plane(Rng& rng) {
   return {Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized(),
           3 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()), 0.0};
 }
 
 std::unique_ptr<PlaneSeen> sees(const BundleProblem& p, int pose, int plane, Huber robust = {}) {
   const Se3& t = p.poses[static_cast<std::size_t>(pose)];
-  const PlaneVariable& truth = p.structures.planes[static_cast<std::size_t>(plane)];
+  const AnchoredPlane& truth = p.structures.planes[static_cast<std::size_t>(plane)];
   return std::make_unique<PlaneSeen>(pose, plane, t.rotation().transpose() * truth.normal,
                                      truth.signed_distance(t.translation()), robust);
 }
@@ -89,7 +89,7 @@ TEST(DenseFactors, TestFactorHasTheRightJacobians) {
   FactorRows rows;
   factor.resize(rows);
   ASSERT_TRUE(factor.evaluate({poses, structures}, true, rows));
-  const auto residual = [&](const Se3& pose, const PlaneVariable& plane) -> Eigen::VectorXd {
+  const auto residual = [&](const Se3& pose, const AnchoredPlane& plane) -> Eigen::VectorXd {
     StructureVariables moved;
     moved.planes = {plane};
     const std::vector<Se3> at{pose};
@@ -132,7 +132,7 @@ class RoomOfPlanes : public ::testing::TestWithParam<int> {
   BundleProblem problem;
   BundleOptions options;
   std::vector<Se3> truth_poses;
-  std::vector<PlaneVariable> truth_planes;
+  std::vector<AnchoredPlane> truth_planes;
 };
 
 TEST_P(RoomOfPlanes, PlanesAndPosesAreFoundTogether) {

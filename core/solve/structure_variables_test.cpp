@@ -46,16 +46,16 @@ TEST(TangentBasis, IsOrthonormalEverywhere) {
   }
 }
 
-TEST(PlaneVariable, IsAManifold) {
+TEST(AnchoredPlane, IsAManifold) {
   Rng rng(2, "structure_variables_test", 0);
-  const auto retract = [](const PlaneVariable& p, const Eigen::VectorXd& d) { return p.retract(d); };
-  const auto local = [](const PlaneVariable& a, const PlaneVariable& b) -> Eigen::VectorXd {
+  const auto retract = [](const AnchoredPlane& p, const Eigen::VectorXd& d) { return p.retract(d); };
+  const auto local = [](const AnchoredPlane& a, const AnchoredPlane& b) -> Eigen::VectorXd {
     return a.local(b);
   };
   for (const Eigen::Vector3d& n : special_normals)
-    expect_manifold<PlaneVariable>({n, {1, 2, 3}, 0.2}, 3, 1, retract, local, rng);
+    expect_manifold<AnchoredPlane>({n, {1, 2, 3}, 0.2}, 3, 1, retract, local, rng);
   for (int i = 0; i < 20; ++i)
-    expect_manifold<PlaneVariable>({unit(rng), {1, 2, 3}, -4}, 3, 1, retract, local, rng);
+    expect_manifold<AnchoredPlane>({unit(rng), {1, 2, 3}, -4}, 3, 1, retract, local, rng);
 }
 
 TEST(PoseVariable, IsAManifold) {
@@ -66,23 +66,23 @@ TEST(PoseVariable, IsAManifold) {
   expect_manifold<Se3>(Se3(), 6, 1, retract, local, rng);
 }
 
-TEST(PlaneVariable, NormalStaysUnitAndAnchorStays) {
-  PlaneVariable p{Eigen::Vector3d(1, 2, 2) / 3, {5, 6, 7}, 0.1};
+TEST(AnchoredPlane, NormalStaysUnitAndAnchorStays) {
+  AnchoredPlane p{Eigen::Vector3d(1, 2, 2) / 3, {5, 6, 7}, 0.1};
   for (int i = 0; i < 1000; ++i) p = p.retract({0.3, -0.2, 0.01});
   EXPECT_NEAR(p.normal.norm(), 1, 1e-14);
   EXPECT_EQ(p.anchor, Eigen::Vector3d(5, 6, 7));
   EXPECT_NEAR(p.offset_m, 10.1, 1e-9);
 }
 
-TEST(PlaneVariable, TurningTheNormalDoesNotMoveThePlaneAtItsAnchor) {
-  const PlaneVariable p{Eigen::Vector3d::UnitX(), {20, 30, 1}, 0};
+TEST(AnchoredPlane, TurningTheNormalDoesNotMoveThePlaneAtItsAnchor) {
+  const AnchoredPlane p{Eigen::Vector3d::UnitX(), {20, 30, 1}, 0};
   EXPECT_NEAR(p.retract({0.1, 0.1, 0}).signed_distance({20, 30, 1}), 0, 1e-14);
   EXPECT_NEAR(p.d(), -20, 1e-14);
 }
 
-TEST(PlaneVariable, SignedDistanceHasTheExpectedDerivative) {
+TEST(AnchoredPlane, SignedDistanceHasTheExpectedDerivative) {
   Rng rng(4, "structure_variables_test", 0);
-  const PlaneVariable p{unit(rng), {1, -2, 3}, 0.3};
+  const AnchoredPlane p{unit(rng), {1, -2, 3}, 0.3};
   const Eigen::Vector3d x(2, 1, 4);
   Eigen::RowVector3d jacobian;
   jacobian << (x - p.anchor).transpose() * tangent_basis(p.normal), 1;

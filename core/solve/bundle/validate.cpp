@@ -26,7 +26,7 @@ void check_values(const BundleProblem& problem) {
   for (std::size_t i = 0; i < problem.landmarks.size(); ++i)
     if (!problem.landmarks[i].allFinite()) refuse("landmark", i, "is not finite");
   for (std::size_t i = 0; i < s.planes.size(); ++i) {
-    const PlaneVariable& p = s.planes[i];
+    const AnchoredPlane& p = s.planes[i];
     if (!p.anchor.allFinite() || !std::isfinite(p.offset_m) || !(std::abs(p.normal.squaredNorm() - 1) < 1e-6))
       refuse("plane", i, "is not finite or its normal not of unit length");
   }

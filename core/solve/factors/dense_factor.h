@@ -24,7 +24,7 @@ struct VariableValues {
   const StructureVariables& structures;
 
   const Se3& pose(int i) const { return poses[static_cast<std::size_t>(i)]; }
-  const PlaneVariable& plane(int i) const { return structures.planes[static_cast<std::size_t>(i)]; }
+  const AnchoredPlane& plane(int i) const { return structures.planes[static_cast<std::size_t>(i)]; }
   const Eigen::Vector3d& centroid(int i) const { return structures.centroids[static_cast<std::size_t>(i)]; }
   const Se3& marker(int i) const { return structures.markers[static_cast<std::size_t>(i)]; }
   // A pose or a marker: both are rigid transforms into the world.

@@ -1,4 +1,4 @@
-#include "core/solve/structure_variables.h"
+#include "core/geometry/plane.h"
 
 #include <cmath>
 
@@ -14,17 +14,17 @@ Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& n) {
   return basis;
 }
 
-PlaneVariable PlaneVariable::retract(const Eigen::Vector3d& delta) const {
+AnchoredPlane AnchoredPlane::retract(const Eigen::Vector3d& delta) const {
   const Eigen::Vector3d v = tangent_basis(normal) * delta.head<2>();
   const double angle = v.norm();
   const double sinc = angle < 1e-4 ? 1 - angle * angle / 6 : std::sin(angle) / angle;
-  PlaneVariable moved = *this;
+  AnchoredPlane moved = *this;
   moved.normal = (std::cos(angle) * normal + sinc * v).normalized();
   moved.offset_m += delta[2];
   return moved;
 }
 
-Eigen::Vector3d PlaneVariable::local(const PlaneVariable& other) const {
+Eigen::Vector3d AnchoredPlane::local(const AnchoredPlane& other) const {
   const Eigen::Vector2d t = tangent_basis(normal).transpose() * other.normal;
   const double sine = t.norm(), cosine = normal.dot(other.normal);
   const double scale = sine < 1e-12 ? 1.0 : std::atan2(sine, cosine) / sine;

@@ -1,0 +1,28 @@
+// A planar surface of the world that keyframes observe: one face of a wall, a ground, a ceiling. A variable of the factor
+// graph.
+#pragma once
+
+#include <vector>
+
+#include "core/map/ids.h"
+#include "core/map/surface_patch.h"
+
+namespace vsgraphs {
+
+struct PlaneObservation {
+  KeyframeId keyframe;      // may be retired: its patches still stand where it stood (Map::surfaces)
+  std::uint16_t patch = 0;  // index into its KeyframeSurfaces
+  bool operator==(const PlaneObservation&) const = default;
+};
+
+struct MappedPlane {
+  AnchoredPlane plane;  // in the world, towards the side that saw it
+  SurfaceRole role = SurfaceRole::undecided;
+  RoleVotes votes{};
+  std::vector<PlaneObservation> observations;  // in the order they were made
+  // The other face of the same wall, looking the other way, and the distance between them.
+  PlaneId other_face;
+  double thickness_m = 0;
+};
+
+}  // namespace vsgraphs
