@@ -132,6 +132,10 @@ void Config::visit(Visitor&& visitor) {
   describe_group("tracker.recovery", tracker.recovery, visitor);
   describe_group("mapper", mapper, visitor);
   describe_group("mapper.culling", mapper.culling, visitor);
+  describe_group("scene", scene, visitor);
+  describe_group("scene.extraction", scene.extraction, visitor);
+  describe_group("scene.association", scene.association, visitor);
+  describe_group("scene.role", scene.role, visitor);
 }
 
 void Config::set(const std::string& key, const OptionValue& value) {

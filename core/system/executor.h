@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/map/label_grid.h"
 #include "core/stages/messages.h"
 #include "core/system/config.h"
 #include "core/system/schedule.h"
@@ -17,6 +18,8 @@ class Executor {
   virtual ~Executor() = default;
   // Empty where the executor passes the frame over (a replay of a run that never saw it).
   virtual std::optional<TrackedFrame> track(const RgbdFrame& frame) = 0;
+  // A segmentation of an earlier frame's image; without effect where that frame is no keyframe.
+  virtual void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) = 0;
   // Waits for all work; afterwards the map is final. May be called twice.
   virtual void finish() = 0;
 

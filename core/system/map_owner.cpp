@@ -27,8 +27,10 @@ void SnapshotCell::close() {
 MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell)
     : snapshot_(map_.snapshot()),
       mapper_(config.mapper, camera, config.orb.pyramid()),
+      scene_(config.scene, camera),
       cell_(cell),
-      spans_("local mapping") {
+      spans_("local mapping"),
+      scene_spans_("scene understanding") {
   cell_.publish({snapshot_, 0});
 }
 
@@ -38,6 +40,30 @@ void MapOwner::insert(const KeyframeRequest& request) {
   newest_frame_ = request.frame_index;
   ++inserted_;
   apply(edit, {EditEvent::Kind::insert, request.frame_index, 0, 0});
+}
+
+void MapOwner::find_planes() {
+  scene_spans_.set_frame(newest_frame_);
+  const MapEdit edit = [&] {
+    const Span span(&scene_spans_, "find_planes");
+    return scene_.propose(newest_, snapshot_, nullptr, &scene_spans_);
+  }();
+  apply(edit, {EditEvent::Kind::planes, newest_frame_, 0, 0});
+}
+
+bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
+  KeyframeId labelled;
+  map_.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
+    if (keyframe.frame_index == frame_index) labelled = id;
+  });
+  if (!labelled.valid()) return false;
+  scene_spans_.set_frame(frame_index);
+  const MapEdit edit = [&] {
+    const Span span(&scene_spans_, "label_planes");
+    return scene_.propose(labelled, snapshot_, &labels, &scene_spans_);
+  }();
+  apply(edit, {EditEvent::Kind::labels, frame_index, 0, 0});
+  return true;
 }
 
 void MapOwner::refine(const std::function<bool()>& stop) {

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "core/stages/local_mapper.h"
+#include "core/stages/scene_builder.h"
 #include "core/system/config.h"
 #include "core/system/schedule.h"
 #include "core/system/span_recorder.h"
@@ -38,14 +39,18 @@ class MapOwner {
  public:
   MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell);
 
-  // One step each: request -> keyframe in the map; window around the keyframe inserted last -> adjusted.
-  // `stop` is asked between iterations.
+  // One step each: request -> keyframe in the map; its planes -> map; a late segmentation of a keyframe -> its planes
+  // sought again; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
   void insert(const KeyframeRequest& request);
+  void find_planes();
+  // False, and nothing done, if the frame is no keyframe (any more).
+  bool label(std::int64_t frame_index, const LabelGrid& labels);
   void refine(const std::function<bool()>& stop);
 
   std::uint64_t version() const { return map_.version(); }
   const std::vector<EditEvent>& edits() const { return edits_; }
-  const SpanRecorder& spans() const { return spans_; }
+  // One lane for mapping, one for scene understanding.
+  std::vector<const SpanRecorder*> spans() const { return {&spans_, &scene_spans_}; }
 
  private:
   void apply(const MapEdit& edit, EditEvent event);
@@ -53,8 +58,9 @@ class MapOwner {
   Map map_;
   Snapshot snapshot_;
   LocalMapper mapper_;
+  SceneBuilder scene_;
   SnapshotCell& cell_;
-  SpanRecorder spans_;
+  SpanRecorder spans_, scene_spans_;
   KeyframeId newest_;
   std::int64_t newest_frame_ = 0;
   std::int64_t inserted_ = 0;

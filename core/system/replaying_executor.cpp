@@ -1,4 +1,5 @@
 #include <deque>
+#include <map>
 
 #include "core/base/check.h"
 #include "core/system/executor.h"
@@ -28,6 +29,10 @@ class ReplayingExecutor : public Executor {
     return result;
   }
 
+  void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
+    labels_[frame_index] = std::move(labels);
+  }
+
   void finish() override {
     require_run(next_frame_ == schedule_.frames.size(),
                 "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
@@ -38,7 +43,7 @@ class ReplayingExecutor : public Executor {
 
   Snapshot snapshot() const override { return cell_.take().snapshot; }
   std::int64_t backlog() const override { return static_cast<std::int64_t>(waiting_.size()); }
-  std::vector<const SpanRecorder*> spans() const override { return {&tracking_.spans(), &owner_.spans()}; }
+  std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
 
  private:
@@ -47,15 +52,34 @@ class ReplayingExecutor : public Executor {
       require_run(owner_.version() < schedule_.edits.size(),
                   "replay: the schedule ends before its last frame; it was cut off");
       const EditEvent& event = schedule_.edits[owner_.version()];
-      if (event.kind == EditEvent::Kind::insert) {
+      repeat(event);
+      require_run(owner_.edits().back() == event, departed(event));
+    }
+  }
+
+  void repeat(const EditEvent& event) {
+    switch (event.kind) {
+      case EditEvent::Kind::insert:
         require_run(!waiting_.empty() && waiting_.front()->frame_index == event.frame, departed(event));
         owner_.insert(*waiting_.front());
         waiting_.pop_front();
-      } else {
+        break;
+      case EditEvent::Kind::planes:
+        owner_.find_planes();
+        break;
+      case EditEvent::Kind::labels: {
+        const auto labels = labels_.find(event.frame);
+        require_run(labels != labels_.end(),
+                    "replay: frame " + std::to_string(event.frame) +
+                        " was segmented in the recorded run and is not now; give the same --segmenter");
+        require_run(owner_.label(event.frame, *labels->second), departed(event));
+        break;
+      }
+      case EditEvent::Kind::refine: {
         int left = event.iterations;
         owner_.refine([&left] { return left-- <= 0; });
+        break;
       }
-      require_run(owner_.edits().back() == event, departed(event));
     }
   }
 
@@ -73,6 +97,7 @@ class ReplayingExecutor : public Executor {
   MapOwner owner_;
   std::size_t next_frame_ = 0;
   std::deque<std::shared_ptr<const KeyframeRequest>> waiting_;
+  std::map<std::int64_t, std::shared_ptr<const LabelGrid>> labels_;
 };
 
 }  // namespace

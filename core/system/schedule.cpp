@@ -1,14 +1,37 @@
 #include "core/system/schedule.h"
 
+#include <array>
 #include <bit>
 #include <cstdio>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "core/base/check.h"
 
 namespace vsgraphs {
+
+namespace {
+
+constexpr std::array<std::pair<const char*, EditEvent::Kind>, 4> kinds = {{
+    {"insert", EditEvent::Kind::insert},
+    {"planes", EditEvent::Kind::planes},
+    {"labels", EditEvent::Kind::labels},
+    {"refine", EditEvent::Kind::refine},
+}};
+
+std::optional<EditEvent::Kind> kind_named(const std::string& name) {
+  for (const auto& [text, kind] : kinds) {
+    if (name == text) return kind;
+  }
+  return std::nullopt;
+}
+
+const char* name_of(EditEvent::Kind kind) { return kinds[static_cast<std::size_t>(kind)].first; }
+
+}  // namespace
 
 Schedule Schedule::read(const std::string& path) {
   std::ifstream file(path);
@@ -26,9 +49,9 @@ Schedule Schedule::read(const std::string& path) {
       ok = static_cast<bool>(in >> e.frame >> std::hex >> stamp_bits >> std::dec >> e.version);
       e.timestamp_s = std::bit_cast<double>(stamp_bits);
       schedule.frames.push_back(e);
-    } else if (what == "insert" || what == "refine") {
+    } else if (const auto kind = kind_named(what)) {
       EditEvent e;
-      e.kind = what == "insert" ? EditEvent::Kind::insert : EditEvent::Kind::refine;
+      e.kind = *kind;
       ok = static_cast<bool>(in >> e.frame);
       if (e.kind == EditEvent::Kind::refine) ok = ok && static_cast<bool>(in >> e.iterations);
       ok = ok && static_cast<bool>(in >> std::hex >> e.hash);
@@ -52,11 +75,8 @@ void Schedule::write(const std::string& path) const {
            << std::dec << ' ' << e.version << '\n';
     }
     for (const EditEvent& e : edits) {
-      if (e.kind == EditEvent::Kind::insert) {
-        file << "insert " << e.frame;
-      } else {
-        file << "refine " << e.frame << ' ' << e.iterations;
-      }
+      file << name_of(e.kind) << ' ' << e.frame;
+      if (e.kind == EditEvent::Kind::refine) file << ' ' << e.iterations;
       file << ' ' << std::hex << e.hash << std::dec << '\n';
     }
     file.flush();

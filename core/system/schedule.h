@@ -2,6 +2,8 @@
 // With the same frames, following it gives the same run. A text file, one line per event:
 //   frame INDEX STAMP VERSION         the frame was tracked on that version of the map (stamp: bits of the double)
 //   insert FRAME HASH                 the frame became a keyframe; hash of the edit
+//   planes FRAME HASH                 its planes were sought
+//   labels FRAME HASH                 a segmentation of its image arrived
 //   refine FRAME ITERATIONS HASH      its window was adjusted with that many iterations
 #pragma once
 
@@ -18,7 +20,7 @@ struct FrameEvent {
 };
 
 struct EditEvent {
-  enum class Kind { insert, refine };
+  enum class Kind { insert, planes, labels, refine };
   Kind kind = Kind::insert;
   std::int64_t frame = 0;
   int iterations = 0;  // of refine

@@ -30,11 +30,15 @@ class ThreadedExecutor : public Executor {
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     rethrow_worker_failure();
     TrackedFrame result = tracking_.track(frame, cell_.take());
-    if (result.keyframe_request) requests_.push(result.keyframe_request);
+    if (result.keyframe_request) requests_.push({result.keyframe_request, 0, nullptr});
     // Nothing can be tracked before the first keyframe stands.
     if (result.status == TrackStatus::initialised) cell_.wait_for_inserted(1);
     if (!options_.realtime) wait_for_mapper();
     return result;
+  }
+
+  void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
+    if (options_.builds_scene()) requests_.push({nullptr, frame_index, std::move(labels)});
   }
 
   void finish() override {
@@ -45,19 +49,31 @@ class ThreadedExecutor : public Executor {
   Snapshot snapshot() const override { return cell_.take().snapshot; }
   std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
   double waited_s() const override { return waited_s_; }
-  std::vector<const SpanRecorder*> spans() const override { return {&tracking_.spans(), &owner_.spans()}; }
+  std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
 
  private:
   // Far above what the keyframe policy lets wait, so that a push never blocks at camera pace.
   static constexpr std::size_t queue_capacity = 64;
 
+  // A keyframe to make, or a segmentation of one.
+  struct Work {
+    std::shared_ptr<const KeyframeRequest> request;
+    std::int64_t labelled_frame = 0;
+    std::shared_ptr<const LabelGrid> labels;
+  };
+
   void work() {
     // Tracking is what a user waits for; on Linux the priority is the thread's own.
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
     try {
-      while (const auto request = requests_.pop()) {
-        owner_.insert(**request);
+      while (const auto work = requests_.pop()) {
+        if (work->labels) {
+          owner_.label(work->labelled_frame, *work->labels);
+          continue;
+        }
+        owner_.insert(*work->request);
+        if (options_.builds_scene()) owner_.find_planes();
         owner_.refine([this] { return requests_.size() >= 2; });
       }
     } catch (const std::exception& error) {
@@ -92,7 +108,7 @@ class ThreadedExecutor : public Executor {
   SnapshotCell cell_;
   TrackingLane tracking_;
   MapOwner owner_;
-  BoundedQueue<std::shared_ptr<const KeyframeRequest>> requests_;
+  BoundedQueue<Work> requests_;
   std::exception_ptr failure_;
   double waited_s_ = 0;
   std::thread worker_;

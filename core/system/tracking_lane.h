@@ -39,4 +39,11 @@ class TrackingLane {
   std::int64_t requested_ = 0;
 };
 
+// Tracking's lane and the map owner's.
+inline std::vector<const SpanRecorder*> lanes(const TrackingLane& tracking, const MapOwner& owner) {
+  std::vector<const SpanRecorder*> all = owner.spans();
+  all.insert(all.begin(), &tracking.spans());
+  return all;
+}
+
 }  // namespace vsgraphs

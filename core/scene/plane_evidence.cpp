@@ -1,0 +1,83 @@
+#include "core/scene/plane_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vsgraphs {
+namespace {
+
+constexpr double min_behind_m = 0.15, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0;
+
+void count(std::uint16_t& counter) {
+  if (counter < std::numeric_limits<std::uint16_t>::max()) ++counter;
+}
+
+}  // namespace
+
+void PlaneEvidence::count_on(Cell c) {
+  count(cells_[c].on);
+  if (low_.s > high_.s) {
+    low_ = high_ = c;
+    return;
+  }
+  low_ = {std::min(low_.s, c.s), std::min(low_.t, c.t)};
+  high_ = {std::max(high_.s, c.s), std::max(high_.t, c.t)};
+}
+
+void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
+                              const DepthNoise& noise) {
+  const double from_camera = plane.signed_distance(world_from_camera.translation());
+  if (from_camera < 0.1) return;  // seen from behind, or from within
+  const Eigen::Vector3d normal = world_from_camera.rotation().transpose() * plane.normal;
+  std::vector<Cell> passed;
+  for (int r = 0; r < grid.rows; ++r) {
+    for (int c = r % 2; c < grid.columns; c += 2) {
+      const Eigen::Vector3d point = grid.at(c, r).point.cast<double>();
+      if (point.z() <= 0 || point.z() > max_range_m) continue;
+      const double distance = from_camera + normal.dot(point);
+      const double sigma = noise.sigma_m(point.z());
+      const bool on = std::abs(distance) < std::max(0.03, on_sigmas * sigma);
+      const bool behind = distance < -std::max(min_behind_m, behind_sigmas * sigma);
+      if (!on && !behind) continue;
+      const Eigen::Vector3d meets = world_from_camera * (point * (from_camera / (from_camera - distance)));
+      const Eigen::Vector2d at = frame_.coordinates(meets);
+      // Rays that graze the plane meet it far off.
+      if (at.cwiseAbs().maxCoeff() > 100.0) continue;
+      const Cell cell = cell_at(at.x(), at.y(), cell_m);
+      if (on)
+        count_on(cell);
+      else
+        passed.push_back(cell);
+    }
+  }
+  if (low_.s > high_.s) return;
+  constexpr int margin = static_cast<int>(margin_m / cell_m);
+  for (const Cell& c : passed) {
+    if (c.s < low_.s - margin || c.s > high_.s + margin || c.t < low_.t - margin || c.t > high_.t + margin)
+      continue;
+    count(cells_[c].through);
+  }
+}
+
+void PlaneEvidence::add(const PlaneEvidence& other) {
+  const auto& cells = other.cells_;
+  for (int t = cells.min_t(); t < cells.end_t(); ++t) {
+    for (int s = cells.min_s(); s < cells.end_s(); ++s) {
+      const CellEvidence e = cells.at({s, t});
+      if (e.on == 0 && e.through == 0) continue;
+      const Eigen::Vector2d at =
+          frame_.coordinates(other.frame_.point((s + 0.5) * cell_m, (t + 0.5) * cell_m));
+      const Cell cell = cell_at(at.x(), at.y(), cell_m);
+      if (e.on > 0) count_on(cell);
+      CellEvidence& mine = cells_[cell];
+      const auto sum = [](int a, int b) {
+        return static_cast<std::uint16_t>(std::min(a + b, int{std::numeric_limits<std::uint16_t>::max()}));
+      };
+      mine.on = sum(mine.on, std::max(0, e.on - 1));
+      mine.through = sum(mine.through, e.through);
+    }
+  }
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,61 @@
+// What rays say about a plane, cell by cell: here they ended on it, there they passed through it to something behind. A
+// cabinet's front is passed above its top, a door leaf beside its edge, a table on all sides; a wall only through its
+// openings. (Free-space reasoning as in occupancy mapping, Moravec and Elfes, ICRA 1985, reduced to one plane.)
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/camera.h"
+#include "core/map/depth_grid.h"
+#include "core/scene/plane_extent.h"
+
+namespace vsgraphs {
+
+struct CellEvidence {
+  std::uint16_t on = 0;       // rays that ended there
+  std::uint16_t through = 0;  // rays that passed there and ended behind
+};
+
+class PlaneEvidence {
+ public:
+  static constexpr double cell_m = PlaneExtent::cell_m;
+
+  explicit PlaneEvidence(const PlaneFrame& frame) : frame_(frame) {}
+
+  // Adds the rays of one keyframe that meet the plane within `margin_m` of where it was seen before or is seen now.
+  // Only rays that come from the side the plane faces count. Cost: the grid's samples, every other one of each row.
+  void integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
+                 const DepthNoise& noise);
+  // Takes over what was counted for a plane that turned out to be the same.
+  void add(const PlaneEvidence& other);
+
+  const PlaneFrame& frame() const { return frame_; }
+  const CellGrid<CellEvidence>& cells() const { return cells_; }
+  // Seen as surface, and not rather as a hole.
+  bool solid(Cell c) const {
+    const CellEvidence e = cells_.at(c);
+    return e.on >= min_on && e.on > e.through;
+  }
+  // Rays pass here.
+  bool open(Cell c) const {
+    const CellEvidence e = cells_.at(c);
+    return e.through >= min_through && e.through > e.on;
+  }
+  // Does the plane stand in the way at this point of it?
+  bool solid_at(const Eigen::Vector3d& point) const {
+    const Eigen::Vector2d c = frame_.coordinates(point);
+    return solid(cell_at(c.x(), c.y(), cell_m));
+  }
+
+ private:
+  static constexpr int min_on = 2, min_through = 2;
+  static constexpr double margin_m = 1.0;
+
+  PlaneFrame frame_;
+  CellGrid<CellEvidence> cells_;
+  // Bounding box of `on` cells; empty while low > high.
+  Cell low_{1, 1}, high_{0, 0};
+  void count_on(Cell c);
+};
+
+}  // namespace vsgraphs
