@@ -24,8 +24,8 @@ class Result:
 
 
 class Slam:
-    """Tracks what it is given; `script` says the status of each frame, "ok" where it ends. Every fifth frame is
-    a keyframe.
+    """Tracks what it is given; `script` says the status of each frame, "ok" where it ends. Every fifth frame
+    is a keyframe.
     """
 
     def __init__(self, script: list[str] | None = None) -> None:

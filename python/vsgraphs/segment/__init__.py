@@ -14,7 +14,7 @@ See docs/segmentation.md.
 
 from vsgraphs.segment.choose import make_segmenter
 from vsgraphs.segment.keyframes import KeyframeSegmentation, attach
-from vsgraphs.segment.roles import SurfaceRole
+from vsgraphs.segment.roles import SurfaceRole, role_of_class
 from vsgraphs.segment.segmentation import RecordedSegmentations, Segmentation, Segmenter
 
 __all__ = [
@@ -25,4 +25,5 @@ __all__ = [
     "SurfaceRole",
     "attach",
     "make_segmenter",
+    "role_of_class",
 ]

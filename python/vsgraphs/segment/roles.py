@@ -52,8 +52,16 @@ def role_named(name: Any, where: str) -> SurfaceRole:
 
 
 def role_of_class(name: str) -> SurfaceRole:
-    """The role a class name speaks for: 'floor' and 'rug' are ground, 'void' is undecided, 'table' other."""
-    return _BY_CLASS_NAME.get(name.lower(), SurfaceRole.other)
+    """The role a class name speaks for: 'floor' and 'rug' are ground, 'void' is undecided, 'table' other.
+
+    Synonyms may follow a comma or semicolon (ADE20K: 'windowpane, window'), a kind may follow a dash (COCO:
+    'wall-brick', 'floor-other-merged').
+    """
+    for synonym in name.lower().replace(";", ",").split(","):
+        role = _BY_CLASS_NAME.get(synonym.strip().partition("-")[0])
+        if role is not None:
+            return role
+    return SurfaceRole.other
 
 
 class RoleTable:
