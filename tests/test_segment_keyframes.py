@@ -17,6 +17,7 @@ from fake_core import Slam
 from tiny_models import colour_model, write_sidecar
 
 from vsgraphs.cli.run import RunRequest, run_sequence
+from vsgraphs.cli.run import _drain as drain
 from vsgraphs.errors import FrameError, InputError
 from vsgraphs.segment import KeyframeSegmentation, Segmentation, SurfaceRole, attach
 from vsgraphs.segment.segmentation import checked
@@ -138,6 +139,48 @@ def test_an_image_the_caller_uses_again_is_safe(gate: Gate) -> None:
         buffer[:] = 99
         gate.open.set()
     assert handed_over(slam) == [(0, 7), (5, 7)]
+
+
+def test_a_grey_image_is_segmented_as_rgb() -> None:
+    shapes = list[tuple[int, ...]]()
+
+    def note(rgb: np.ndarray) -> Segmentation:
+        shapes.append(rgb.shape)
+        return marked(rgb)
+
+    slam = Slam()
+    segmentation = KeyframeSegmentation(slam, note, beside=False)
+    segmentation.track(image(7)[:, :, 0], DEPTH, 0.0)
+    assert shapes == [(4, 4, 3)]
+    assert handed_over(slam) == [(0, 7)]
+
+
+@pytest.mark.parametrize("what", ["limit", "signal", "done"])
+def test_the_program_stops_waiting_at_its_limit_or_a_signal(
+    gate: Gate, capsys: pytest.CaptureFixture[str], what: str
+) -> None:
+    slam = Slam()
+    segmentation = KeyframeSegmentation(slam, gate)
+    track(segmentation, 0, 11)
+    assert gate.entered.wait(30)
+    asked = list[int]()
+
+    def stop() -> bool:
+        asked.append(1)
+        if what == "done" or len(asked) > 2:
+            gate.open.set()
+        return what == "signal" and len(asked) > 2
+
+    drain(segmentation, 0.0 if what == "limit" else 60.0, stop)
+    assert (capsys.readouterr().err != "") == (what != "limit")
+    counts = segmentation.report()
+    if what == "limit":
+        assert (counts["segmented"], counts["dropped"]) == (0, 3)
+    elif what == "done":
+        assert (counts["segmented"], counts["dropped"]) == (3, 0)
+    else:
+        assert counts["segmented"] + counts["dropped"] == 3
+        assert len(asked) == 3
 
 
 @pytest.mark.parametrize("beside", [False, True])

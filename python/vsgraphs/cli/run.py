@@ -71,7 +71,8 @@ def run_sequence(request: RunRequest) -> int:
             if session.tally.interrupted:
                 print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
             stopped = session.tally.interrupted or failure is not None
-            draining = _attempt(lambda: _drain(segmentation, 0.0 if stopped else _DRAIN_LIMIT_S))
+            limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
+            draining = _attempt(lambda: _drain(segmentation, limit_s, interrupt.requested))
             failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
             outcome.segmentation = segmentation
@@ -112,7 +113,9 @@ def _beside_tracking(
     return KeyframeSegmentation(slam, segmenter, beside=not repeatable, tell=progress.event)
 
 
-def _drain(segmentation: KeyframeSegmentation | None, limit_s: float) -> None:
+def _drain(
+    segmentation: KeyframeSegmentation | None, limit_s: float, stop: Callable[[], bool] = lambda: False
+) -> None:
     if segmentation is None:
         return
     waiting = segmentation.waiting
@@ -120,7 +123,10 @@ def _drain(segmentation: KeyframeSegmentation | None, limit_s: float) -> None:
         print(
             f"segmenting the last {waiting} keyframes, at most {limit_s:.0f} s", file=sys.stderr, flush=True
         )
-    segmentation.finish(limit_s)
+    deadline = time.monotonic() + limit_s
+    while segmentation.waiting and time.monotonic() < deadline and not stop():
+        time.sleep(0.02)  # in slices, so that Ctrl-C is answered
+    segmentation.finish(0.0)
 
 
 def _attempt(step: Callable[[], object]) -> Exception | None:

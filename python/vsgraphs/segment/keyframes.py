@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any
 
+import numpy as np
+
 from vsgraphs.errors import FrameError
 from vsgraphs.segment.segmentation import (
     RecordedSegmentations,
@@ -91,12 +93,15 @@ class KeyframeSegmentation:
         self.finish(DRAIN_LIMIT_S if kind is None else 0.0)
 
     def track(self, rgb: Rgb, depth: Any, timestamp: float) -> Any:
-        """`slam.track`; a keyframe's image is copied and segmented. Raises what `slam.track` raises."""
+        """`slam.track`; a keyframe's image is copied and segmented (a grey one as RGB). Raises what
+        `slam.track` raises.
+        """
         result = self._slam.track(rgb, depth, timestamp)
         index = self._frames
         self._frames += 1  # the core counts a frame it refused as little as we do
         if result.is_keyframe:
-            keyframe = _Keyframe(index, rgb.copy(), timestamp)
+            image = np.repeat(rgb[:, :, None], 3, axis=2) if rgb.ndim == 2 else rgb.copy()
+            keyframe = _Keyframe(index, image, timestamp)
             if self._thread is None:
                 self._segment(keyframe)
             else:
@@ -113,8 +118,8 @@ class KeyframeSegmentation:
     def finish(self, limit_s: float = DRAIN_LIMIT_S) -> None:
         """Segments what waits, for at most `limit_s`, and drops the rest; call it before `slam.finish`.
 
-        A call of the segmenter that is under way is waited for as long again, then left behind: its result
-        is no longer handed over. Raises RuntimeError if the core refused a result.
+        A call of the segmenter that is under way is waited for as long again, at least 1 s, then left
+        behind: its result is no longer handed over. Raises RuntimeError if the core refused a result.
         """
         if self._thread is not None:
             thread, self._thread = self._thread, None
