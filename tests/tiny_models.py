@@ -23,7 +23,9 @@ def save_model(
 ) -> Path:
     """A model with the input `image`."""
     made = {node.output[0] for node in nodes}
-    nodes = nodes + [helper.make_node("Identity", [name], [f"{name}_out"]) for name in outputs if name not in made]
+    nodes = nodes + [
+        helper.make_node("Identity", [name], [f"{name}_out"]) for name in outputs if name not in made
+    ]
     names = [name if name in made else f"{name}_out" for name in outputs]
     graph = helper.make_graph(
         nodes,
