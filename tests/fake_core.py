@@ -16,6 +16,7 @@ class InputError(ValueError):
 @dataclass
 class Result:
     status: str
+    is_keyframe: bool = False
 
     @property
     def tracked(self) -> bool:
@@ -23,13 +24,17 @@ class Result:
 
 
 class Slam:
-    """Tracks what it is given; `script` says the status of each frame, "ok" where it ends."""
+    """Tracks what it is given; `script` says the status of each frame, "ok" where it ends. Every fifth frame
+    is a keyframe.
+    """
 
     def __init__(self, script: list[str] | None = None) -> None:
         self.script = script or []
         self.stamps: list[float] = []
         self.seen = 0
+        self.accepted = 0  # frames that were not refused: what the core counts
         self.finished = False
+        self.segmentations: list[tuple[int, np.ndarray, np.ndarray | None, np.ndarray | None]] = []
 
     def track(self, rgb: np.ndarray, depth: np.ndarray, timestamp: float) -> Result:
         if depth.dtype != np.uint16:
@@ -38,10 +43,18 @@ class Slam:
         self.seen += 1
         if status == "refused":
             raise InputError("rgb: must be larger")
-        result = Result(status)
+        result = Result(status, is_keyframe=self.accepted % 5 == 0)
+        self.accepted += 1
         if result.tracked:
             self.stamps.append(timestamp)
         return result
+
+    def add_segmentation(
+        self, frame_index: int, roles: np.ndarray, confidence: np.ndarray | None, instances: np.ndarray | None
+    ) -> None:
+        if self.finished:
+            raise InputError("add_segmentation() after finish()")
+        self.segmentations.append((frame_index, roles, confidence, instances))
 
     def finish(self) -> None:
         self.finished = True

@@ -57,6 +57,9 @@ def run(
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set one option; repeatable.")
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
+    segmenter: Annotated[
+        str, typer.Option(help="What tells surfaces apart: geometry, onnx:FILE, labels:DIR.")
+    ] = "geometry",
     schedule_out: Annotated[
         Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
     ] = None,
@@ -79,6 +82,7 @@ def run(
             out=out,
             camera=camera,
             max_frames=max_frames,
+            segmenter=segmenter,
             config_file=config,
             assignments=list(set_ or []),
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from vsgraphs.cli.session import Tally
     from vsgraphs.datasets import RecordedSequence
+    from vsgraphs.segment import KeyframeSegmentation
 
 
 @dataclass
@@ -35,6 +36,8 @@ class RunOutcome:
     frames: int
     wall_s: float
     startup_s: float | None
+    segmenter: str = "geometry"  # as the user named it
+    segmentation: KeyframeSegmentation | None = None
 
 
 def write_results(outcome: RunOutcome) -> dict[str, Any]:
@@ -96,6 +99,10 @@ def run_report(outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int
         "startup_s": outcome.startup_s,
         "interrupted": outcome.tally.interrupted,
         "stages": statistics["stages"],
+        "segmentation": {
+            "backend": outcome.segmenter,
+            **(outcome.segmentation.report() if outcome.segmentation else {}),
+        },
         "source": {
             "name": outcome.sequence.name,
             "format": outcome.sequence.format,
@@ -105,7 +112,12 @@ def run_report(outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int
         "commit": commit(core()),
         "configuration": {key: outcome.config.get(key) for key in outcome.config.keys()},  # noqa: SIM118
         "seed": outcome.config.get("system.seed"),
-        "warnings": [*outcome.sequence.warnings, *outcome.tally.warnings, *statistics["warnings"]],
+        "warnings": [
+            *outcome.sequence.warnings,
+            *outcome.tally.warnings,
+            *(outcome.segmentation.warnings if outcome.segmentation else ()),
+            *statistics["warnings"],
+        ],
     }
 
 
@@ -124,4 +136,6 @@ def summarise(report: dict[str, Any], out: Path) -> str:
 def _spans(outcome: RunOutcome) -> list[Span]:
     spans: list[Span] = [tuple(span) for span in outcome.slam.trace()]
     spans += [("decoding", "decode", *span) for span in outcome.tally.decode_spans]
+    if outcome.segmentation is not None:
+        spans += [("segmentation", "segment", *span) for span in outcome.segmentation.spans]
     return spans

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
 from vsgraphs.cli.interrupt import Interrupt
@@ -22,6 +22,12 @@ from vsgraphs.datasets.prefetch import Prefetcher
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import prepare_directory
 
+if TYPE_CHECKING:
+    from vsgraphs.segment import KeyframeSegmentation, RecordedSegmentations, Segmenter
+
+# How long keyframes that still wait for the segmenter may take once all frames are tracked.
+_DRAIN_LIMIT_S = 10.0
+
 
 @dataclass
 class RunRequest:
@@ -31,6 +37,7 @@ class RunRequest:
     out: Path
     camera: str | None = None
     max_frames: int | None = None
+    segmenter: str = "geometry"
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
@@ -39,6 +46,7 @@ class RunRequest:
 def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
     sequence = open_sequence(request.source, request.camera)
+    segmenter = _make_segmenter(request.segmenter)
     prepare_directory(request.out)
     _check_schedule_out(request)
     frames = sequence.frames[: request.max_frames]
@@ -54,16 +62,21 @@ def run_sequence(request: RunRequest) -> int:
             progress = Progress(len(frames))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
             stamps = [frame.timestamp for frame in frames]
-            session = Session(slam, loaded, stamps, progress, pacing, interrupt.requested)
+            segmentation = _beside_tracking(slam, segmenter, config, progress)
+            session = Session(segmentation or slam, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
             failure = _attempt(session.run)
             loaded.close()
             progress.clear()
             if session.tally.interrupted:
                 print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
-            finishing = _attempt(slam.finish)
-            failure = failure or finishing  # the first trouble is the one to tell
-            report = _write(_outcome(request, sequence, config, slam, session.tally, began), failure)
+            stopped = session.tally.interrupted or failure is not None
+            limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
+            draining = _attempt(lambda: _drain(segmentation, limit_s, interrupt.requested))
+            failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
+            outcome = _outcome(request, sequence, config, slam, session.tally, began)
+            outcome.segmentation = segmentation
+            report = _write(outcome, failure)
     if failure is not None:
         raise failure
     if not report["tracked"] and not session.tally.interrupted:
@@ -78,6 +91,42 @@ def _check_schedule_out(request: RunRequest) -> None:
     folder = Path(str(path)).parent
     if path is not None and not (folder.is_dir() and os.access(folder, os.W_OK)):
         raise InputError(f"--schedule-out {path}: {folder} is not a directory that can be written to")
+
+
+def _make_segmenter(text: str) -> Segmenter | RecordedSegmentations | None:
+    if text == "geometry":
+        return None
+    from vsgraphs.segment import make_segmenter
+
+    return make_segmenter(text)
+
+
+def _beside_tracking(
+    slam: Any, segmenter: Segmenter | RecordedSegmentations | None, config: Any, progress: Progress
+) -> KeyframeSegmentation | None:
+    """Within the tracker's thread where every run must be alike, beside it otherwise."""
+    if segmenter is None:
+        return None
+    from vsgraphs.segment import KeyframeSegmentation
+
+    repeatable = config.get("system.execution") == "serial" or bool(config.get("system.replay"))
+    return KeyframeSegmentation(slam, segmenter, beside=not repeatable, tell=progress.event)
+
+
+def _drain(
+    segmentation: KeyframeSegmentation | None, limit_s: float, stop: Callable[[], bool] = lambda: False
+) -> None:
+    if segmentation is None:
+        return
+    waiting = segmentation.waiting
+    if waiting and limit_s:
+        print(
+            f"segmenting the last {waiting} keyframes, at most {limit_s:.0f} s", file=sys.stderr, flush=True
+        )
+    deadline = time.monotonic() + limit_s
+    while segmentation.waiting and time.monotonic() < deadline and not stop():
+        time.sleep(0.02)  # in slices, so that Ctrl-C is answered
+    segmentation.finish(0.0)
 
 
 def _attempt(step: Callable[[], object]) -> Exception | None:
@@ -135,4 +184,5 @@ def _outcome(
         frames=tally.seen + (sum(sequence.skipped.values()) if whole else 0),
         wall_s=time.monotonic() - began,
         startup_s=None if first is None else first - started,
+        segmenter=request.segmenter,
     )

@@ -1,0 +1,148 @@
+"""The file beside an ONNX model that says what goes in and what comes out (docs/segmentation.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from vsgraphs.errors import InputError
+from vsgraphs.segment.fields import Fields, read_object
+from vsgraphs.segment.roles import RoleTable, SurfaceRole, role_named
+
+# The tensors each kind of output consists of: those it must have, those it may have.
+KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "semantic": (("scores",), ()),
+    "semantic_argmax": (("classes",), ()),
+    "panoptic_masks": (("class_logits", "mask_logits"), ()),
+    "panoptic_segments": (("segments", "segment_classes"), ("segment_scores", "segment_ids")),
+}
+_OPTIONS = {
+    "semantic": ("layout", "values"),
+    "semantic_argmax": (),
+    "panoptic_masks": ("score_threshold", "overlap_threshold", "void_class"),
+    "panoptic_segments": ("void_segment",),
+}
+
+
+@dataclass(frozen=True)
+class InputFormat:
+    """How an image becomes the network's input: stretched to `size`, then (value * scale - mean) / std."""
+
+    name: str | None
+    size: tuple[int, int] | None  # width, height, pixels; None: what the model says
+    layout: str  # NCHW or NHWC
+    colour: str  # rgb or bgr
+    scale: float
+    mean: tuple[float, ...]  # in the order of `colour`
+    std: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class OutputFormat:
+    """What the network's outputs mean."""
+
+    kind: str  # of KINDS
+    tensors: dict[str, str]  # part -> the output's name
+    layout: str = "NCHW"  # of semantic scores
+    values: str = "logits"  # or probabilities
+    score_threshold: float = 0.8
+    overlap_threshold: float = 0.8
+    void_class: int | None = None  # None: the last
+    void_segment: int = 0
+
+
+@dataclass(frozen=True)
+class Sidecar:
+    """A sidecar file."""
+
+    path: Path
+    input: InputFormat
+    output: OutputFormat
+    roles: RoleTable
+
+
+def read_sidecar(path: Path) -> Sidecar:
+    """Reads a sidecar. Raises InputError that names the file and the key."""
+    root = Fields(
+        read_object(path, "sidecar"), str(path), ("input", "output", "classes", "roles", "model_card")
+    )
+    return Sidecar(
+        path,
+        _input(root.required("input"), f"{path}: input"),
+        _output(root.required("output"), f"{path}: output"),
+        _roles(root),
+    )
+
+
+def _input(data: Any, where: str) -> InputFormat:
+    fields = Fields(data, where, ("name", "size", "layout", "colour", "scale", "mean", "std"))
+    size = None
+    if fields.has("size"):
+        width, height = fields.numbers("size", 2, ())
+        if min(width, height) < 1 or width % 1 or height % 1:
+            raise fields.wrong("size", "[width, height] in whole pixels")
+        size = (int(width), int(height))
+    std = fields.numbers("std", 3, (1, 1, 1))
+    if 0 in std:
+        raise fields.wrong("std", "different from 0")
+    return InputFormat(
+        name=fields.text("name") if fields.has("name") else None,
+        size=size,
+        layout=fields.choice("layout", ("NCHW", "NHWC")),
+        colour=fields.choice("colour", ("rgb", "bgr"), "rgb"),
+        scale=fields.number("scale", 1.0),
+        mean=fields.numbers("mean", 3, (0, 0, 0)),
+        std=std,
+    )
+
+
+def _output(data: Any, where: str) -> OutputFormat:
+    kinds = tuple(KINDS)
+    every = [part for must, may in KINDS.values() for part in (*must, *may)]
+    options = [option for some in _OPTIONS.values() for option in some]
+    kind = Fields(data, where, ("kind", *every, *options)).choice("kind", kinds)
+    must, may = KINDS[kind]
+    fields = Fields(data, f"{where} ({kind})", ("kind", *must, *may, *_OPTIONS[kind]))
+    return OutputFormat(
+        kind=kind,
+        tensors={part: fields.text(part) for part in (*must, *may) if part in must or fields.has(part)},
+        layout=fields.choice("layout", ("NCHW", "NHWC"), "NCHW"),
+        values=fields.choice("values", ("logits", "probabilities"), "logits"),
+        score_threshold=fields.share("score_threshold", 0.8),
+        overlap_threshold=fields.share("overlap_threshold", 0.8),
+        void_class=fields.integer("void_class", 0) if fields.has("void_class") else None,
+        void_segment=fields.integer("void_segment", 0),
+    )
+
+
+def _roles(root: Fields) -> RoleTable:
+    """Roles by class name where `classes` lists them, or by number."""
+    classes = None
+    if root.has("classes"):
+        classes = root.required("classes")
+        if not isinstance(classes, list) or not all(isinstance(name, str) for name in classes) or not classes:
+            raise InputError(f"{root.where}: 'classes' must be a list of names, class 0 first")
+        if len(set(classes)) < len(classes):
+            twice = next(name for name in classes if classes.count(name) > 1)
+            raise InputError(f"{root.where}: 'classes' lists '{twice}' twice")
+    where = f"{root.where}: roles"
+    names = classes or []
+    given = root.required("roles")
+    numbered = {key: None for key in given if key.isdecimal()} if isinstance(given, dict) else {}
+    Fields(given, where, (*names, *numbered))
+    roles: dict[int, SurfaceRole] = {}
+    for key, role in given.items():
+        if key == "comment":
+            continue
+        roles[names.index(key) if key in names else _class_number(key, where)] = role_named(role, where)
+    if not roles:
+        raise InputError(f'{where}: no class has a role; e.g. {{"wall": "wall", "floor": "ground"}}')
+    return RoleTable(roles, str(root.where), None if classes is None else len(classes))
+
+
+def _class_number(key: str, where: str) -> int:
+    number = int(key)
+    if number > 65535:
+        raise InputError(f"{where}: class {key} is beyond 65535")
+    return number
