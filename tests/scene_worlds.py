@@ -15,9 +15,9 @@ DOOR_M = (0.9, 2.05)
 
 
 def building() -> dict[str, Any]:
-    """Two rooms side by side and a corridor along both, in the format of scene_gt.json.
+    """Two rooms side by side and a corridor along both, as scene_gt.json has them.
 
-    The rooms' corridor walls are coplanar, so are the far walls. A store room beside is scenery (not counted).
+    The rooms' corridor walls are coplanar, so are the outer ones. A store room beside is scenery.
     """
     rooms = [
         _room("A", 0.0, 0.0, 4.0, 3.0),
@@ -101,7 +101,7 @@ def camera_poses(truth: dict[str, Any], count: int = 12) -> Array:
 
 
 def perfect_map(truth: dict[str, Any], poses: Array) -> tuple[dict[str, Any], tuple[Array, Array, Array]]:
-    """What `snapshot.scene_graph()` and `snapshot.keyframes()` give for a flawless run, in the first camera's frame."""
+    """`snapshot.scene_graph()` and `snapshot.keyframes()` of a flawless run, in the first camera's frame."""
     ids: dict[Any, int] = {}
     everyone = list(range(len(poses)))
     planes = []
@@ -172,7 +172,7 @@ def _structure(truth: dict[str, Any], ids: dict[Any, int]) -> dict[str, Any]:
     places = [
         {
             "id": i,
-            "position": np.array(room["centroid"]) + [0, 0, 1.2],
+            "position": np.array(room["centroid"]) + np.array([0, 0, 1.2]),
             "clearance_m": 0.8,
             "room": i,
             "neighbours": [j for j in range(len(rooms)) if abs(i - j) == 1],

@@ -315,7 +315,9 @@ def test_rastered_areas() -> None:
     assert rasterise(l_shape[::-1]).cells == 7500
     assert rasterise(turned).cells == pytest.approx(7500, rel=0.01)
     assert intersection_over_union(rasterise(square), rasterise(l_shape)) == pytest.approx(0.75)
-    assert common_cells(rasterise(square), rasterise(square + [1.5, -0.5])) == pytest.approx(0.75 / 4e-4)
+    assert common_cells(rasterise(square), rasterise(square + np.array([1.5, -0.5]))) == pytest.approx(
+        0.75 / 4e-4
+    )
     assert common_cells(rasterise(square), rasterise(square + 5)) == 0
 
 

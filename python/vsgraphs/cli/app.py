@@ -95,8 +95,8 @@ def evaluate(
     groundtruth: Annotated[
         Path | None,
         typer.Option(
-            help="True trajectory (TUM, ICL-NUIM, Replica), or the sequence's folder. Required, but with --scene: "
-            "there groundtruth.txt beside --truth unless given."
+            help="True trajectory (TUM, ICL-NUIM, Replica), or the sequence's folder. Required; with --scene "
+            "groundtruth.txt beside --truth unless given."
         ),
     ] = None,
     sequence: Annotated[

@@ -17,7 +17,8 @@ def plane_of_points(
 ) -> npt.NDArray[np.int64]:
     """(M, 3) points in the graph's frame -> (M,) id of the plane each lies on, -1 for none.
 
-    A point lies on a plane at most on_plane_m away, over or within 0.2 m of its observed cells; of several the nearest.
+    A point lies on a plane at most on_plane_m away, over or within 0.2 m of its observed cells; of several on
+    the nearest.
     """
     owner = np.full(len(positions), -1, dtype=np.int64)
     nearest = np.full(len(positions), on_plane_m)

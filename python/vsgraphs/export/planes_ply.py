@@ -11,7 +11,7 @@ _FACE = np.dtype([("count", "u1"), ("corners", "<i4", 4)])
 
 
 def format_planes_ply(graph: SceneGraph) -> bytes:
-    """PLY bytes: every observed cell of every plane, neighbours in a row joined to one rectangle, coloured by class.
+    """PLY bytes: every observed cell of every plane, coloured by class, neighbours in a row as one.
 
     Doorways and other unseen parts stay open. Each vertex carries `plane` (the id) and the normal.
     """
@@ -42,7 +42,7 @@ def format_planes_ply(graph: SceneGraph) -> bytes:
 
 
 def run_corners(extent: PlaneExtent) -> Array:
-    """(R, 4, 3) corners of the rectangle that each run of cells covers, counter-clockwise seen from the front."""
+    """(R, 4, 3) corners of the rectangle that each run of cells covers, counter-clockwise from the front."""
     v, first, last = extent.runs.T if len(extent.runs) else np.zeros((3, 0), np.int64)
     u0, u1, v0, v1 = first, last + 1, v, v + 1
     uv = np.stack([np.stack(pair, axis=1) for pair in ((u0, v0), (u1, v0), (u1, v1), (u0, v1))], axis=1)

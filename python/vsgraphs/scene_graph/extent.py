@@ -49,7 +49,8 @@ class PlaneExtent:
 
     def cell_centres(self) -> Array:
         """(C, 3) middles of the occupied cells, on the plane."""
-        return self.lift((self.cells() + 0.5) * self.cell_m)
+        middles = (self.cells().astype(np.float64) + 0.5) * self.cell_m
+        return self.lift(middles)
 
     def lift(self, uv: Array) -> Array:
         """(N, 2) plane coordinates in metres -> (N, 3)."""
@@ -82,12 +83,14 @@ def plane_axes(normal: Array, up: Array | None) -> tuple[Array, Array]:
     """
     toward = up if up is not None else np.array([0.0, -1.0, 0.0])  # cameras look with y down
     if abs(float(normal @ toward)) < np.sqrt(0.5):
-        v = toward - normal * float(normal @ toward)
-        v = v / np.linalg.norm(v)
-        return np.cross(v, normal), v
-    u = np.array([1.0, 0.0, 0.0]) - normal * normal[0]
-    u = u / np.linalg.norm(u)
-    return u, np.cross(normal, u)
+        v: Array = toward - normal * float(normal @ toward)
+        v /= np.linalg.norm(v)
+        across: Array = np.cross(v, normal)
+        return across, v
+    u: Array = np.array([1.0, 0.0, 0.0]) - normal * normal[0]
+    u /= np.linalg.norm(u)
+    along: Array = np.cross(normal, u)
+    return u, along
 
 
 def convex_hull(uv: Array) -> Array:

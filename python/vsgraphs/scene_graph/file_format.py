@@ -54,7 +54,7 @@ def format_scene_graph(graph: SceneGraph) -> str:
 
 
 def load_scene_graph(path: Path) -> SceneGraph:
-    """Reads scene_graph.json. Raises InputError: missing, truncated, another format, a newer version, broken."""
+    """Reads scene_graph.json. Raises InputError: missing, cut off, another format, newer, inconsistent."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -72,12 +72,12 @@ def parse_scene_graph(document: Any, source: str) -> SceneGraph:
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise InputError(f'{source}: not a scene graph of vsgraphs ("format" is not "{FORMAT}")')
     version = document.get("version")
-    if not isinstance(version, int) or version < 1:
+    if not isinstance(version, int) or isinstance(version, bool) or version < 1:
         raise InputError(f'{source}: "version" is {version!r}, expected a positive integer')
     if version > VERSION:
         raise InputError(
-            f"{source}: written by a newer vsgraphs (format version {version}, this one reads up to {VERSION}); "
-            "update vsgraphs"
+            f"{source}: written by a newer vsgraphs (format version {version}, this one reads up to "
+            f"{VERSION}); update vsgraphs"
         )
     violation = first_violation(document)
     if violation is not None:

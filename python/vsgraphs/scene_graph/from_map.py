@@ -66,10 +66,12 @@ class _Mover:
         return _finite(levelling.transform_points(self.transform, points), what)
 
     def point(self, values: Any, what: str) -> Array:
-        return self.points(_vector(values, what), what)[0]
+        point: Array = self.points(_vector(values, what), what)[0]
+        return point
 
     def direction(self, values: Any, what: str) -> Array:
-        return self.transform[:3, :3] @ _vector(values, what)
+        direction: Array = self.transform[:3, :3] @ _vector(values, what)
+        return direction
 
 
 def _rows(raw: Row, name: str) -> list[dict[str, Any]]:

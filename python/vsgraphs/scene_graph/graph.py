@@ -1,4 +1,4 @@
-"""The scene graph: keyframes, building components, rooms, floors, doors, markers, places, and what relates them."""
+"""The scene graph: keyframes, building components, rooms, floors, doors, markers, places, and relations."""
 
 from __future__ import annotations
 

@@ -18,9 +18,9 @@ def level(up: Array | None, planes: Sequence[Mapping[str, Any]], first_camera: A
     """The levelled frame of a map; the map's own where `up` is None.
 
     up: (3,) against gravity, in the map. planes: the map's raw planes. first_camera: (4, 4)
-    world_from_camera of the first keyframe, in the map. z = 0 is where the plumb line through the first camera meets
-    the ground: of the ground planes below that camera the one most observed, those seen within 3 m of the
-    plumb line before others.
+    world_from_camera of the first keyframe, in the map. z = 0 is where the plumb line through the first
+    camera meets the ground: of the ground planes below that camera the one most observed, those seen within
+    3 m of the plumb line before others.
     """
     if up is None:
         return Frame()

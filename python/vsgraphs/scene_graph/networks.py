@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 def to_networkx(graph: SceneGraph) -> Any:
     """networkx.MultiDiGraph; nodes are named "plane:3" and carry `kind` and the dataclass's fields.
 
-    Edges carry `kind` (their key, with "/door:N" for doors), `factor`, `via`; symmetric ones are there in both directions, so that
-    paths can be searched. Places are joined by edges of kind "free". Raises InputError where networkx is
-    not installed.
+    Edges carry `kind` (their key, with "/door:N" for doors), `factor`, `via`; symmetric ones are there in
+    both directions, so that paths can be searched. Places are joined by edges of kind "free". Raises
+    InputError where networkx is not installed.
     """
     try:
         import networkx

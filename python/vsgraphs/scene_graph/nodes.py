@@ -108,7 +108,7 @@ class MarkerNode:
 
 @dataclass(eq=False)
 class PlaceNode:
-    """A point of free space with nothing nearer than clearance_m; neighbours are reached in a straight line."""
+    """A point of free space, nothing nearer than clearance_m; neighbours are reached in a straight line."""
 
     id: int
     position: Array

@@ -29,7 +29,7 @@ class RoomPath:
 
 
 def inside_polygon(points: Array, polygon: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """(N, 2) points, (M, 2) corners of a simple polygon -> (N,) whether inside (crossings of a ray are odd)."""
+    """(N, 2) points, (M, 2) corners of a simple polygon -> (N,) whether inside (odd crossings of a ray)."""
     inside = np.zeros(len(points), dtype=bool)
     for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         crosses = (ay > points[:, 1]) != (by > points[:, 1])

@@ -1,7 +1,8 @@
 """Checks a parsed file against the shipped JSON Schema (draft 2020-12), of which we use a small part.
 
 Understood: type, const, enum, required, properties, additionalProperties (as a schema), items, minItems,
-maxItems, minimum, pattern, $ref into $defs. Tests check our answers against the package jsonschema.
+maxItems, minimum, pattern, $ref into $defs. Stricter in one thing: 1.0 is no integer. Tests check our
+answers against the package jsonschema.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def _check_value(value: Any, rule: dict[str, Any]) -> str | None:  # noqa: PLR09
         wanted = [rule["type"]] if isinstance(rule["type"], str) else rule["type"]
         if not any(_is(value, name) for name in wanted):
             return f"must be {' or '.join(wanted)}, not {json.dumps(value)[:40]}"
-    if "const" in rule and value != rule["const"]:
+    if "const" in rule and (value != rule["const"] or isinstance(value, bool)):  # only Python has True == 1
         return f"must be {rule['const']!r}"
     if "enum" in rule and value not in rule["enum"]:
         return f"must be one of {', '.join(map(str, rule['enum']))}, not {json.dumps(value)[:40]}"

@@ -9,8 +9,8 @@ from vsgraphs.evaluate.association import associate
 from vsgraphs.scene_graph import SceneGraph
 from vsgraphs.trajectory import Array, Trajectory
 
-# What a camera's turn weighs against its place: the tips of an arm this long count as places too. Against walks
-# of metres it is nothing; after a straight walk it alone says which way is up.
+# What a camera's turn weighs against its place: the tips of arms this long count as places too. Against
+# walks of metres it is nothing; after a straight walk it alone says which way is up.
 ARM_M = 0.2
 _SAME_STAMP_S = 1e-4
 _AGREE_M = 0.05
@@ -42,7 +42,8 @@ def trajectory_from_graph(graph: SceneGraph, trajectory: Trajectory) -> Array:
             raise InputError("no keyframe of the scene graph has a pose in the trajectory: different runs")
         return np.eye(4)
     keyframes, places = poses[order][ours], trajectory.positions[theirs]
-    for transform in (np.eye(4), np.linalg.inv(graph.frame.world_from_map)):
+    map_from_graph = np.asarray(np.linalg.inv(graph.frame.world_from_map), dtype=np.float64)
+    for transform in (np.eye(4), map_from_graph):
         if np.median(np.linalg.norm((transform @ keyframes)[:, :3, 3] - places, axis=1)) < _AGREE_M:
             return transform
     raise InputError(
@@ -52,5 +53,6 @@ def trajectory_from_graph(graph: SceneGraph, trajectory: Trajectory) -> Array:
 
 
 def _with_arms(poses: Array) -> Array:
-    tips = poses[:, None, :3, 3] + ARM_M * np.swapaxes(poses[:, :3, :3], 1, 2)
-    return np.concatenate([poses[:, None, :3, 3], tips], axis=1).reshape(-1, 3)
+    tips: Array = poses[:, None, :3, 3] + ARM_M * np.swapaxes(poses[:, :3, :3], 1, 2)
+    arms: Array = np.concatenate([poses[:, None, :3, 3], tips], axis=1).reshape(-1, 3)
+    return arms

@@ -31,8 +31,9 @@ def score_map(points: Array, truth: SceneTruth, options: SceneOptions) -> MapSco
 
 
 def structural_distance(points: Array, truth: SceneTruth) -> Array:
-    """(M, 3) -> (M,) distance to the nearest wall, floor or ceiling of any room, scored or not. Openings count
-    as wall: where they are is for the doors' score.
+    """(M, 3) -> (M,) distance to the nearest wall, floor or ceiling of any room, scored or not.
+
+    Openings count as wall: where they are is for the doors' score.
     """
     distance = np.full(len(points), np.inf)
     for wall in truth.walls:

@@ -31,7 +31,7 @@ class Raster:
 
 
 def rasterise(polygon: Array) -> Raster:
-    """(N, 2) corners of a simple polygon, either way round, metres. Cost: cells of the bounding box times N."""
+    """(N, 2) corners of a simple polygon, either way round, metres. Cost: cells of its box times N."""
     least = np.floor(polygon.min(axis=0) / CELL_M).astype(np.int64)
     most = np.ceil(polygon.max(axis=0) / CELL_M).astype(np.int64)
     i, j = np.meshgrid(np.arange(least[0], most[0]), np.arange(least[1], most[1]), indexing="ij")

@@ -28,7 +28,8 @@ def evaluate_scene(
     """Scores walls, grounds, rooms, floors, doors and the map's points.
 
     alignment: (4, 4) truth_from_graph, of the trajectory (`align_poses`), never of the planes. ate_m: the
-    trajectory's ATE, which loosens the offset tolerance (SceneOptions). map_points: (M, 3) in the graph's frame.
+    trajectory's ATE, which loosens the offset tolerance (SceneOptions). map_points: (M, 3) in the graph's
+    frame.
     """
     tolerance_m = options.offset_tolerance_m(ate_m)
     walls = [aligned(plane, alignment) for plane in graph.planes_of("wall")]

@@ -54,7 +54,8 @@ class TrueWall:
     @property
     def middle(self) -> Array:
         """(3,) the face's centre."""
-        return (self.start + self.end) / 2 + np.array([0.0, 0.0, self.height_m / 2])
+        middle: Array = (self.start + self.end) / 2 + np.array([0.0, 0.0, self.height_m / 2])
+        return middle
 
 
 @dataclass(eq=False)
