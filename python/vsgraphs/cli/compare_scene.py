@@ -107,11 +107,13 @@ def _print(scores: SceneScores, accuracy: Evaluation) -> None:
     console = Console(width=None, highlight=False)
     for note in scores.notes:
         console.print(f"note: {note}", markup=False, soft_wrap=True)
-    heads = ("", "detected / true", "false", "precision", "recall", "F1", "mean error")
+    heads = ("", "found/true", "false", "prec.", "recall", "F1", "mean error")
     table = Table(*heads, box=None, header_style="bold", pad_edge=False)
     for column in table.columns[1:6]:
         column.justify = "right"
-    _row(table, "building components", scores.building_components)
+    for column in table.columns:
+        column.no_wrap = True
+    _row(table, "components", scores.building_components)
     _row(table, "  walls", scores.walls)
     _row(table, "  ground", scores.ground)
     _row(table, "rooms", scores.rooms)

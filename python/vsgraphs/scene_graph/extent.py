@@ -99,7 +99,7 @@ def convex_hull(uv: Array) -> Array:
     """
     points = np.unique(np.round(uv, 3), axis=0)  # in order of u, then v
     first = np.concatenate([[True], np.diff(points[:, 0]) > 0])
-    ends = points[first | np.roll(first, -1)]  # between the lowest and highest of a u no corner lies
+    ends: Array = points[first | np.roll(first, -1)]  # between the lowest and highest of a u no corner lies
     if len(ends) < 3:
         return ends
     corners = [(float(u), float(v)) for u, v in ends]
