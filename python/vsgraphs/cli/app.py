@@ -97,8 +97,12 @@ def evaluate(
         Path, typer.Argument(help="Trajectory in TUM format, or the directory a run left it in.")
     ] = Path("trajectory.txt"),
     groundtruth: Annotated[
-        Path, typer.Option(help="True trajectory (TUM, ICL-NUIM, Replica), or the sequence's folder.")
-    ] = ...,  # type: ignore[assignment]  # typer's way of saying: required
+        Path | None,
+        typer.Option(
+            help="True trajectory (TUM, ICL-NUIM, Replica), or the sequence's folder. Required; with --scene "
+            "groundtruth.txt beside --truth unless given."
+        ),
+    ] = None,
     sequence: Annotated[
         Path | None, typer.Option(help="Folder of the input sequence, to count completion against.")
     ] = None,
@@ -109,12 +113,27 @@ def evaluate(
     plot: Annotated[
         Path | None, typer.Option(help="Draw both trajectories to this .png or .svg file.")
     ] = None,
+    scene: Annotated[
+        Path | None, typer.Option(help="Score the scene graph in this directory of a run instead.")
+    ] = None,
+    truth: Annotated[Path | None, typer.Option(help="scene_gt.json, with --scene.")] = None,
+    tolerance: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Another tolerance of --scene, as offset_m=0.1; repeatable."),
+    ] = None,
 ) -> None:
-    """Compare a trajectory with the ground truth: ATE, RPE, completion."""
+    """Compare a trajectory (ATE, RPE, completion) or a scene graph (--scene, --truth) with the truth."""
     with told():
-        from vsgraphs.cli.compare import CompareRequest, compare
+        if scene is not None or truth is not None:
+            from vsgraphs.cli.compare_scene import compare_scene, scene_request
 
-        compare(CompareRequest(trajectory, groundtruth, sequence, max_dt, json_file, plot))
+            compare_scene(
+                scene_request(scene, truth, groundtruth, max_dt, json_file, list(tolerance or []), plot)
+            )
+            return
+        from vsgraphs.cli.compare import CompareRequest, compare, required_truth
+
+        compare(CompareRequest(trajectory, required_truth(groundtruth), sequence, max_dt, json_file, plot))
 
 
 @app.command()

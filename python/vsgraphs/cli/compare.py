@@ -55,6 +55,13 @@ def compare(request: CompareRequest) -> Evaluation:
     return result
 
 
+def required_truth(groundtruth: Path | None) -> Path:
+    """What --groundtruth says. Raises InputError where it is missing."""
+    if groundtruth is None:
+        raise InputError("missing --groundtruth: give the true trajectory or the sequence's folder")
+    return groundtruth
+
+
 def read_groundtruth(path: Path) -> Trajectory:
     """The truth from a TUM, ICL-NUIM or Replica trajectory file, or from a sequence's folder."""
     if path.is_dir():

@@ -1,0 +1,168 @@
+"""scene_gt.json: what a place really looks like. World z up, metres; see docs/simulator.md."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vsgraphs.errors import InputError
+from vsgraphs.trajectory import Array
+
+_COPLANAR_M = 0.05
+
+
+@dataclass(eq=False)
+class TrueRoom:
+    """polygon: (N, 2) counter-clockwise. required: must be found; others are neither hit nor false."""
+
+    id: str
+    polygon: Array
+    z_floor: float
+    height_m: float
+    level: int
+    required: bool
+
+
+@dataclass(eq=False)
+class TrueWall:
+    """One face. start, end: (3,) on the floor. normal: (3,) into the room, normal . x + offset_m = 0."""
+
+    id: str
+    room: str
+    start: Array
+    end: Array
+    height_m: float
+    normal: Array
+    required: bool
+
+    @property
+    def length_m(self) -> float:
+        """Along the floor."""
+        return float(np.linalg.norm(self.end - self.start))
+
+    @property
+    def along(self) -> Array:
+        """(3,) unit vector from start to end."""
+        along: Array = (self.end - self.start) / np.linalg.norm(self.end - self.start)
+        return along
+
+    @property
+    def middle(self) -> Array:
+        """(3,) the face's centre."""
+        middle: Array = (self.start + self.end) / 2 + np.array([0.0, 0.0, self.height_m / 2])
+        return middle
+
+
+@dataclass(eq=False)
+class TrueGround:
+    """Coplanar floors of rooms."""
+
+    id: str
+    z: float
+    rooms: list[TrueRoom]
+
+    @property
+    def required(self) -> bool:
+        """Whether one of its rooms must be found."""
+        return any(room.required for room in self.rooms)
+
+
+@dataclass(eq=False)
+class TrueDoor:
+    """center: (3,) middle of the threshold. required: both rooms are."""
+
+    id: str
+    rooms: frozenset[str]
+    center: Array
+    required: bool
+
+
+@dataclass(eq=False)
+class SceneTruth:
+    """Everything that is scored."""
+
+    rooms: list[TrueRoom]
+    walls: list[TrueWall]
+    grounds: list[TrueGround]
+    doors: list[TrueDoor]
+
+    def storeys(self) -> dict[int, list[TrueRoom]]:
+        """Level -> its rooms."""
+        levels: dict[int, list[TrueRoom]] = {}
+        for room in self.rooms:
+            levels.setdefault(room.level, []).append(room)
+        return dict(sorted(levels.items()))
+
+
+def load_scene_truth(path: Path) -> SceneTruth:
+    """Reads scene_gt.json. Raises InputError."""
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot read scene truth {path}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not a JSON file ({error})") from None
+    return parse_scene_truth(document, str(path))
+
+
+def parse_scene_truth(document: Any, source: str) -> SceneTruth:
+    """A parsed scene_gt.json; `source` names it in errors."""
+    if not isinstance(document, Mapping) or "rooms" not in document or "walls" not in document:
+        raise InputError(f"{source}: not a scene truth, it has no rooms and walls (see docs/simulator.md)")
+    try:
+        rooms = [_room(row) for row in document["rooms"]]
+        required = {room.id: room.required for room in rooms}
+        walls = [_wall(row) for row in document["walls"]]
+        doors = [_door(row, required) for row in document.get("doors", ())]
+    except (KeyError, TypeError, ValueError) as error:
+        what = f"no {error}" if isinstance(error, KeyError) else str(error)
+        raise InputError(f"{source}: broken scene truth: {what}") from None
+    return SceneTruth(rooms, walls, _grounds(rooms), doors)
+
+
+def _room(row: Mapping[str, Any]) -> TrueRoom:
+    return TrueRoom(
+        id=str(row["id"]),
+        polygon=np.array(row["polygon"], dtype=np.float64)[:, :2],
+        z_floor=float(row["z_floor"]),
+        height_m=float(row["height"]),
+        level=int(row.get("level", 0)),
+        required=bool(row["counted"]) and bool(row["visited"]),
+    )
+
+
+def _wall(row: Mapping[str, Any]) -> TrueWall:
+    return TrueWall(
+        id=str(row["id"]),
+        room=str(row["room"]),
+        start=np.array(row["p0"], dtype=np.float64).reshape(3),
+        end=np.array(row["p1"], dtype=np.float64).reshape(3),
+        height_m=float(row["height"]),
+        normal=np.array(row["n"], dtype=np.float64).reshape(3),
+        required=bool(row["counted"]) and bool(row["observed"]),
+    )
+
+
+def _door(row: Mapping[str, Any], required: Mapping[str, bool]) -> TrueDoor:
+    rooms = frozenset(map(str, row["rooms"]))
+    return TrueDoor(
+        id=str(row["id"]),
+        rooms=rooms,
+        center=np.array(row["center"], dtype=np.float64).reshape(3),
+        required=all(required.get(room, False) for room in rooms),
+    )
+
+
+def _grounds(rooms: list[TrueRoom]) -> list[TrueGround]:
+    grounds: list[TrueGround] = []
+    for room in sorted(rooms, key=lambda room: room.z_floor):
+        if grounds and room.z_floor - grounds[-1].z < _COPLANAR_M:
+            grounds[-1].rooms.append(room)
+        else:
+            grounds.append(TrueGround(f"ground at {room.z_floor:g} m", room.z_floor, [room]))
+    return grounds

@@ -1,0 +1,98 @@
+"""The scene graph: keyframes, building components, rooms, floors, doors, markers, places, and relations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vsgraphs.errors import InputError
+from vsgraphs.scene_graph import levelling, queries
+from vsgraphs.scene_graph.edges import Edge
+from vsgraphs.scene_graph.nodes import (
+    DoorNode,
+    FloorNode,
+    Frame,
+    KeyframeNode,
+    MarkerNode,
+    PlaceNode,
+    PlaneNode,
+    RoomNode,
+)
+
+if TYPE_CHECKING:
+    from vsgraphs.trajectory import Array
+
+SECTIONS = ("keyframes", "planes", "rooms", "floors", "doors", "markers", "places")
+
+
+@dataclass(eq=False)
+class SceneGraph:
+    """Nodes by id, in ascending order of id, and edges. Coordinates are in `frame`, metres.
+
+    estimated: which of SECTIONS whoever made the graph looked for at all. An empty section in it means that
+    none was found; one that is not in it, that nobody looked.
+    """
+
+    frame: Frame = field(default_factory=Frame)
+    keyframes: dict[int, KeyframeNode] = field(default_factory=dict)
+    planes: dict[int, PlaneNode] = field(default_factory=dict)
+    rooms: dict[int, RoomNode] = field(default_factory=dict)
+    floors: dict[int, FloorNode] = field(default_factory=dict)
+    doors: dict[int, DoorNode] = field(default_factory=dict)
+    markers: dict[int, MarkerNode] = field(default_factory=dict)
+    places: dict[int, PlaceNode] = field(default_factory=dict)
+    edges: list[Edge] = field(default_factory=list)
+    estimated: frozenset[str] = frozenset(SECTIONS)
+
+    @classmethod
+    def from_map(cls, raw: Mapping[str, Any], keyframes: tuple[Any, Any, Any]) -> SceneGraph:
+        """The graph of a map snapshot, levelled where `up` is known.
+
+        raw: `snapshot.scene_graph()`; keyframes: `snapshot.keyframes()`, ids (N,), timestamps (N,) seconds,
+        world_from_camera (N, 4, 4); both in the map's frame. Raises InputError for values that are not
+        finite and for references to nodes that are not there.
+        """
+        from vsgraphs.scene_graph.from_map import graph_from_map
+
+        return graph_from_map(raw, keyframes)
+
+    def poses_from_map(self, poses: Array) -> Array:
+        """(N, 4, 4) poses in the map's frame (`slam.trajectory()`, `snapshot.keyframes()`) -> the graph's."""
+        return levelling.transform_poses(self.frame.world_from_map, poses)
+
+    def points_from_map(self, points: Array) -> Array:
+        """(N, 3) points in the map's frame (`snapshot.landmarks()`) -> the graph's."""
+        return levelling.transform_points(self.frame.world_from_map, points)
+
+    def planes_of(self, *roles: str) -> list[PlaneNode]:
+        """The planes of these roles, by id."""
+        return [plane for plane in self.planes.values() if plane.role in roles]
+
+    def room(self, which: int | str) -> RoomNode:
+        """A room by id or name; of equal names the first. Raises InputError."""
+        found = next((room for room in self.rooms.values() if which in (room.id, room.name)), None)
+        if found is None:
+            known = ", ".join(room.name or str(room.id) for room in self.rooms.values()) or "none"
+            raise InputError(f"no room {which!r} in the scene graph; its rooms: {known}")
+        return found
+
+    def room_at(self, point: Array) -> RoomNode | None:
+        """The room that (3,) `point` lies in, or above whose floor it is; None outside of all."""
+        return queries.room_at(self, np.asarray(point, dtype=np.float64))
+
+    def path_between(self, room_a: int | str, room_b: int | str) -> queries.RoomPath | None:
+        """The shortest way through doors from one room's middle to another's; None where there is none."""
+        return queries.path_between(self, self.room(room_a), self.room(room_b))
+
+    def neighbours(self, room: int | str) -> dict[int, list[int]]:
+        """Rooms next door -> the doors that lead there, both by id."""
+        return queries.neighbours(self, self.room(room))
+
+    def to_networkx(self) -> Any:
+        """A networkx.MultiDiGraph; see `networks`. Raises InputError where networkx is not installed."""
+        from vsgraphs.scene_graph.networks import to_networkx
+
+        return to_networkx(self)

@@ -1,0 +1,45 @@
+"""A scene graph for networkx."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+from vsgraphs.errors import InputError
+from vsgraphs.scene_graph.edges import SYMMETRIC, node_key
+
+if TYPE_CHECKING:
+    from vsgraphs.scene_graph.graph import SceneGraph
+
+
+def to_networkx(graph: SceneGraph) -> Any:
+    """networkx.MultiDiGraph; nodes are named "plane:3" and carry `kind` and the dataclass's fields.
+
+    Edges carry `kind` (their key, with "/door:N" for doors), `factor`, `via`; symmetric ones are there in
+    both directions, so that paths can be searched. Places are joined by edges of kind "free". Raises
+    InputError where networkx is not installed.
+    """
+    try:
+        import networkx
+    except ImportError:
+        raise InputError(
+            "networkx is not installed; install it with: pip install 'vsgraphs[graph]'"
+        ) from None
+    out = networkx.MultiDiGraph(levelled=graph.frame.levelled, world_from_map=graph.frame.world_from_map)
+    for kind in ("keyframe", "plane", "room", "floor", "door", "marker", "place"):
+        for node in getattr(graph, f"{kind}s").values():
+            values = {f.name: getattr(node, f.name) for f in fields(node) if f.name != "kind"}
+            if kind in ("room", "door"):
+                values["subtype"] = node.kind  # "corridor", "passage"
+            out.add_node(node_key(kind, node.id), kind=kind, **values)
+    for edge in graph.edges:
+        key = edge.kind if edge.via is None else f"{edge.kind}/{edge.via}"
+        values = {"kind": edge.kind, "factor": edge.factor, "via": edge.via}
+        out.add_edge(edge.source, edge.target, key, **values)
+        if edge.kind in SYMMETRIC:
+            out.add_edge(edge.target, edge.source, key, **values)
+    for place in graph.places.values():
+        for other in place.neighbours:
+            ends = node_key("place", place.id), node_key("place", other)
+            out.add_edge(*ends, "free", kind="free", factor=None, via=None)
+    return out
