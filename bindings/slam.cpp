@@ -1,6 +1,7 @@
 #include "core/system/slam.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -33,6 +34,14 @@ ImageView<T> view_of(const AnyImage& image, const char* name, std::int64_t chann
       std::string(name) + ": the image's rows are not contiguous; pass numpy.ascontiguousarray(image)");
   return {static_cast<const T*>(image.data()), static_cast<int>(image.shape(1)),
           static_cast<int>(image.shape(0)), image.stride(0) / channels};
+}
+
+template <typename T>
+ImageView<T> label_view(const AnyImage& image, const char* name) {
+  require_input(image.ndim() == 2 && image.dtype() == nb::dtype<T>(),
+                std::string("segmentation: ") + name + " must be a " + std::to_string(8 * sizeof(T)) +
+                    "-bit (height, width) array (roles uint8, confidence float32, instances uint16)");
+  return view_of<T>(image, name, 1);
 }
 
 RgbdFrame frame_of(const AnyImage& rgb, const AnyImage& depth, double timestamp) {
@@ -137,6 +146,8 @@ void bind_results(nb::module_& m) {
       .def_prop_ro(
           "status", [](const TrackedFrame& f) { return to_string(f.status); },
           "waiting, initialised, ok, coasting, lost or relocalised")
+      .def_prop_ro(
+          "index", [](const TrackedFrame& f) { return f.index; }, "the frame's number, from 0")
       .def_prop_ro("tracked", [](const TrackedFrame& f) { return has_pose(f.status); })
       .def_prop_ro(
           "world_from_camera", &pose_or_none,
@@ -156,7 +167,10 @@ void bind_results(nb::module_& m) {
       .def("landmarks", &landmarks_of,
            nb::sig("def landmarks(self) -> tuple[numpy.typing.NDArray[numpy.float64], "
                    "numpy.typing.NDArray[numpy.uint8]]"),
-           "(points in the world (M, 3) float64 m, colours (M, 3) uint8)");
+           "(points in the world (M, 3) float64 m, colours (M, 3) uint8)")
+      .def("scene_graph", &scene_graph_of, nb::sig("def scene_graph(self) -> dict[str, typing.Any]"),
+           "Planes and what is made of them, in the world (the first keyframe's camera): what "
+           "vsgraphs.scene_graph.SceneGraph.from_map takes. Linear in the points kept of the planes.");
 }
 
 }  // namespace
@@ -187,6 +201,28 @@ void bind_slam(nb::module_& m) {
           "Raises InputError for wrong shapes or types and for timestamps that are not finite or do not "
           "rise; the\n"
           "frame then changes nothing. The GIL is released while tracking.")
+      .def(
+          "add_segmentation",
+          [](Slam& slam, std::int64_t frame_index, const AnyImage& roles,
+             const std::optional<AnyImage>& confidence, const std::optional<AnyImage>& instances) {
+            Segmentation segmentation;
+            segmentation.roles = label_view<std::uint8_t>(roles, "roles");
+            if (confidence) segmentation.confidence = label_view<float>(*confidence, "confidence");
+            if (instances) segmentation.instances = label_view<std::uint16_t>(*instances, "instances");
+            const nb::gil_scoped_release release;
+            slam.add_segmentation(frame_index, segmentation);
+          },
+          "frame_index"_a, "roles"_a, "confidence"_a = nb::none(), "instances"_a = nb::none(),
+          nb::sig("def add_segmentation(self, frame_index: int, roles: numpy.typing.NDArray[numpy.uint8], "
+                  "confidence: numpy.typing.NDArray[numpy.float32] | None = None, instances: "
+                  "numpy.typing.NDArray[numpy.uint16] | None = None) -> None"),
+          "Says what the pixels of an earlier frame's image show; may come late and from any thread.\n\n"
+          "Args:\n"
+          "  frame_index: the frame's TrackResult.index. Frames that are no keyframes: no effect.\n"
+          "  roles: (h, w) uint8, values of vsgraphs.segment.SurfaceRole; any size, stretched over the image.\n"
+          "  confidence: (h, w) float32, 0 to 1; None: 1 everywhere.\n"
+          "  instances: (h, w) uint16, pieces of one thing share a number, 0: none.\n\n"
+          "Raises InputError for wrong shapes, types or values.")
       .def(
           "snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
           "The newest map. Cheap, from any thread.")

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/solve/factors/relative_pose.h"
+#include "core/solve/window_planes.h"
 
 namespace vsgraphs {
 
@@ -124,7 +125,8 @@ void build_tracked_links(const Map& map, const Window&, const MeasurementModel&,
 }
 
 using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
-constexpr std::array<FactorBuilder, 2> factor_builders = {build_landmark_factors, build_tracked_links};
+constexpr std::array<FactorBuilder, 4> factor_builders = {
+    build_landmark_factors, build_tracked_links, build_plane_factors, build_wall_to_ground_factors};
 
 }  // namespace
 
@@ -185,6 +187,9 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
   }
   for (std::size_t i = 0; i < bundle.landmarks.size(); ++i) {
     draft.record(MoveLandmark{problem.landmark_of_point[i], bundle.landmarks[i]});
+  }
+  for (std::size_t i = 0; i < problem.plane_of_variable.size(); ++i) {
+    draft.record(MovePlane{problem.plane_of_variable[i], bundle.structures.planes[i]});
   }
 }
 

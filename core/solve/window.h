@@ -34,12 +34,13 @@ struct WindowProblem {
   BundleProblem bundle;
   std::vector<KeyframeId> keyframe_of_pose;
   std::vector<LandmarkId> landmark_of_point;
+  std::vector<PlaneId> plane_of_variable;
 };
 
-// Walks the table of factor builders: landmarks now; planes, rooms, floors and markers as they come.
+// Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground.
 WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);
 
-// Records the solution in `draft`: moved poses, landmarks and passengers, and removes the observations that
+// Records the solution in `draft`: moved poses, landmarks, passengers and planes, and removes the observations that
 // `report` calls outliers.
 void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report,
                     Draft& draft);

@@ -29,6 +29,7 @@ std::string at_time(double timestamp_s) {
 
 Slam::Slam(const Config& config, const Camera& camera)
     : config_(config),
+      camera_(camera),
       executor_(make_executor(config, camera)),
       last_timestamp_s_(-std::numeric_limits<double>::infinity()) {}
 
@@ -65,6 +66,11 @@ void Slam::note_status(const TrackedFrame& frame) {
     warnings_.push_back("tracking was recovered (relocalised) at " + at_time(frame.timestamp_s));
     lost_ = false;
   }
+}
+
+void Slam::add_segmentation(std::int64_t frame_index, const Segmentation& segmentation) {
+  auto labels = std::make_shared<const LabelGrid>(sample_labels(segmentation, camera_));
+  if (!finished_) executor_->label(frame_index, std::move(labels));
 }
 
 Snapshot Slam::snapshot() const { return executor_->snapshot(); }

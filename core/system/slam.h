@@ -1,6 +1,7 @@
 // The whole system behind one class: frames in, trajectory and map out.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "core/stages/messages.h"
 #include "core/system/config.h"
 #include "core/system/executor.h"
+#include "core/system/segmentation.h"
 
 namespace vsgraphs {
 
@@ -38,6 +40,11 @@ class Slam {
   // timestamp that is not finite or not later than the last one's, or images that do not fit the camera; such a
   // frame changes nothing and the next one can follow. Throws InputError after finish().
   TrackedFrame track(RgbdFrame frame);
+
+  // A segmentation of the image of an earlier frame (TrackedFrame::index). Any thread, before finish(); afterwards, and
+  // for frames that are no keyframes, it has no effect. `roles`: any size, stretched over the image; `confidence` 0..1
+  // (empty: 1 everywhere) and `instances` (empty: none) of the same size. Throws InputError for other sizes or values.
+  void add_segmentation(std::int64_t frame_index, const Segmentation& segmentation);
 
   // The newest published map; any thread, any time. Cost: one pointer.
   Snapshot snapshot() const;
@@ -67,13 +74,14 @@ class Slam {
   // wait for the frame to end.
   mutable std::mutex frames_mutex_;
   Config config_;
+  Camera camera_;
   std::unique_ptr<Executor> executor_;
   std::vector<FrameRecord> records_;
   std::vector<std::string> warnings_;
   std::int64_t frames_ = 0;
   double last_timestamp_s_;
   bool lost_ = false;
-  bool finished_ = false;
+  std::atomic<bool> finished_ = false;
 };
 
 }  // namespace vsgraphs

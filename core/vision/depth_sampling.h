@@ -12,6 +12,8 @@ namespace vsgraphs {
 
 class DepthSampler {
  public:
+  static constexpr int step_px = 8;
+
   explicit DepthSampler(const Camera& camera);
 
   // Each sample is the mean of the 3x3 pixels that agree with the middle one within the sensor's noise; its
@@ -26,7 +28,6 @@ class DepthSampler {
   double smoothed_depth(const DepthView& depth, int u, int v) const;
   void add_normals(DepthGrid& grid) const;
 
-  static constexpr int step_px = 8;
   Camera camera_;
   DepthLookup lookup_;
   int columns_, rows_;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +11,13 @@ from vsgraphs.cli import measures
 from vsgraphs.compiled import core
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
+from vsgraphs.export.class_colours import class_colours
+from vsgraphs.export.floorplan import format_floorplan
+from vsgraphs.export.planes_ply import format_planes_ply
 from vsgraphs.export.ply import format_ply
+from vsgraphs.export.spark_dsg import format_spark_dsg
 from vsgraphs.export.timeline import Span, format_timeline
+from vsgraphs.scene_graph import SceneGraph, format_scene_graph
 from vsgraphs.trajectory import format_tum
 from vsgraphs.version import commit, versions
 
@@ -36,6 +42,7 @@ class RunOutcome:
     frames: int
     wall_s: float
     startup_s: float | None
+    map_colours: str = "image"  # of map.ply: image or class
     segmenter: str = "geometry"  # as the user named it
     segmentation: KeyframeSegmentation | None = None
 
@@ -48,18 +55,26 @@ def write_results(outcome: RunOutcome) -> dict[str, Any]:
     slam = outcome.slam
     snapshot = slam.snapshot()
     stamps, poses = slam.trajectory()
-    _, keyframe_stamps, keyframe_poses = snapshot.keyframes()
+    ids, keyframe_stamps, keyframe_poses = snapshot.keyframes()
     positions, colours = snapshot.landmarks()
+    graph = None
+    if outcome.config.get("system.mode") != "slam":
+        graph = SceneGraph.from_map(snapshot.scene_graph(), (ids, keyframe_stamps, keyframe_poses))
+        poses, keyframe_poses = graph.poses_from_map(poses), graph.poses_from_map(keyframe_poses)
+        positions = graph.points_from_map(positions)
+        if outcome.map_colours == "class":
+            colours = class_colours(graph, positions)
     report: dict[str, Any] = {}
 
     def figures() -> str:  # last, so that CPU and memory are those of the whole process
-        report.update(run_report(outcome, len(stamps), len(keyframe_stamps), len(positions)))
+        report.update(run_report(outcome, len(stamps), len(keyframe_stamps), len(positions), graph))
         return json.dumps(report, indent=1) + "\n"
 
     contents: dict[str, Callable[[], str | bytes]] = {
         "trajectory.txt": lambda: format_tum(stamps, poses),
         "keyframes.txt": lambda: format_tum(keyframe_stamps, keyframe_poses),
         "map.ply": lambda: format_ply(positions, colours),
+        **(_scene_files(graph, poses) if graph is not None else {}),
         "timeline.json": lambda: format_timeline(_spans(outcome)),
         "run.json": figures,
     }
@@ -80,7 +95,35 @@ def write_results(outcome: RunOutcome) -> dict[str, Any]:
     return report
 
 
-def run_report(outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int) -> dict[str, Any]:
+def _scene_files(graph: SceneGraph, poses: Any) -> dict[str, Callable[[], str | bytes]]:
+    """What shows the scene graph; all in the graph's frame, like the trajectory."""
+    return {
+        "scene_graph.json": lambda: format_scene_graph(graph),
+        "scene_graph.dsg.json": lambda: format_spark_dsg(graph),
+        "floorplan.svg": lambda: format_floorplan(graph, poses[:, :3, 3]),
+        "planes.ply": lambda: format_planes_ply(graph),
+    }
+
+
+def _scene_counts(graph: SceneGraph | None) -> dict[str, Any]:
+    """How many of each kind of surface and structure, and in which frame all files are."""
+    if graph is None:
+        return {"frame": "first_camera"}
+    roles = Counter(plane.role for plane in graph.planes.values())
+    return {
+        "frame": "levelled" if graph.frame.levelled else "first_camera",
+        "planes": len(graph.planes),
+        "walls": roles["wall"],
+        "grounds": roles["ground"],
+        "rooms": len(graph.rooms),
+        "floors": len(graph.floors),
+        "doors": len(graph.doors),
+    }
+
+
+def run_report(
+    outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int, graph: SceneGraph | None
+) -> dict[str, Any]:
     """run.json: figures, then what is needed to repeat them."""
     statistics = outcome.slam.statistics()
     processed = outcome.tally.seen
@@ -91,6 +134,7 @@ def run_report(outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int
         "skipped": dict(sorted({**outcome.sequence.skipped, **outcome.tally.skipped}.items())),
         "keyframes": keyframes,
         "landmarks": landmarks,
+        "scene": _scene_counts(graph),
         "wall_s": outcome.wall_s,
         "waited_s": float(statistics["waited_s"]),
         "cpu_s": measures.cpu_s(),

@@ -1,0 +1,122 @@
+#include "core/solve/window_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/solve/condense_observations.h"
+#include "core/solve/factors/plane_observation.h"
+#include "core/solve/factors/plane_perpendicular.h"
+#include "core/solve/factors/plane_prior.h"
+#include "core/solve/structure_gate.h"
+
+namespace vsgraphs {
+namespace {
+
+// What is common to all readings of a frame: depth and colour are not taken at one time, and the sensor's depth is off by
+// a smooth error of its own.
+constexpr FrameTolerance frame_error{0.01, 0.004};
+// What the pose of a keyframe outside the window may be off by.
+constexpr FrameTolerance outer_pose_error{0.03, 0.01};
+
+std::vector<int> pose_positions(const Map& map, const WindowProblem& problem) {
+  std::vector<int> position(map.keyframes().index_bound(), -1);
+  for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i)
+    position[problem.keyframe_of_pose[i].index] = static_cast<int>(i);
+  return position;
+}
+
+struct SeenByPose {
+  int pose;
+  PlaneEstimate seen;  // in that pose's frame
+};
+
+class PlaneGathering {
+ public:
+  PlaneGathering(const Map& map, const WindowProblem& problem)
+      : map_(map), problem_(problem), pose_of_(pose_positions(map, problem)) {}
+
+  // Sorts a plane's observations; false if no free pose sees it.
+  bool gather(const MappedPlane& plane) {
+    inside_.clear();
+    outside_.clear();
+    bool free = false;
+    for (const PlaneObservation& o : plane.observations) {
+      const SurfacePatch* patch = map_.patch(o);
+      const auto living = map_.reanchor({o.keyframe, Se3{}});
+      if (!patch || !living) continue;
+      const PlaneEstimate seen = plane_estimate(*patch).inflated(frame_error).transformed(living->keyframe_from_camera);
+      const int pose = pose_of_[living->keyframe.index];
+      const bool fixed = pose >= 0 && problem_.bundle.pose_fixed[static_cast<std::size_t>(pose)];
+      if (pose >= 0 && !fixed) {
+        free = true;
+        inside_.push_back({pose, seen});
+      } else {
+        const Se3& placed = map_.keyframes().find(living->keyframe)->world_from_camera;
+        outside_.push_back({(fixed ? seen : seen.inflated(outer_pose_error)).transformed(placed)});
+      }
+    }
+    return free && inside_.size() + outside_.size() >= 2;
+  }
+  const std::vector<SeenByPose>& inside() const { return inside_; }
+  const std::vector<WeightedPlane>& outside() const { return outside_; }
+  // Among the patches the window sees, so that turning the plane there moves it little.
+  Eigen::Vector3d anchor(const MappedPlane& plane) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const SeenByPose& s : inside_)
+      sum += problem_.bundle.poses[static_cast<std::size_t>(s.pose)] * s.seen.plane.anchor;
+    return plane.plane.project(sum / static_cast<double>(inside_.size()));
+  }
+
+ private:
+  const Map& map_;
+  const WindowProblem& problem_;
+  std::vector<int> pose_of_;
+  std::vector<SeenByPose> inside_;
+  std::vector<WeightedPlane> outside_;
+};
+
+}  // namespace
+
+void build_plane_factors(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
+  PlaneGathering gathering(map, problem);
+  map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
+    if (!gathering.gather(plane)) return;
+    const int index = static_cast<int>(problem.bundle.structures.planes.size());
+    const AnchoredPlane start = plane.plane.anchored_at(gathering.anchor(plane));
+    problem.bundle.structures.planes.push_back(start);
+    problem.plane_of_variable.push_back(id);
+    for (const SeenByPose& s : gathering.inside())
+      problem.bundle.factors.push_back(std::make_unique<PlaneObservationFactor>(s.pose, index, s.seen));
+    if (const auto known = condense_observations(gathering.outside(), start))
+      problem.bundle.factors.push_back(std::make_unique<PlanePrior>(index, *known, huber_3dof));
+  });
+}
+
+void build_wall_to_ground_factors(const Map& map, const Window&, const MeasurementModel&,
+                                  WindowProblem& problem) {
+  if (!map.up_in_world()) return;
+  const Eigen::Vector3d& up = *map.up_in_world();
+  const auto& planes = problem.bundle.structures.planes;
+  const auto role = [&](std::size_t i) { return map.planes().find(problem.plane_of_variable[i])->role; };
+  constexpr AngleGate gate;
+  for (std::size_t wall = 0; wall < planes.size(); ++wall) {
+    if (role(wall) != SurfaceRole::wall) continue;
+    int nearest = -1;
+    double nearest_m = 0;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      if (role(i) != SurfaceRole::ground) continue;
+      const double above_m = std::abs(up.dot(planes[wall].anchor - planes[i].anchor));
+      if (nearest >= 0 && above_m >= nearest_m) continue;
+      nearest = static_cast<int>(i);
+      nearest_m = above_m;
+    }
+    if (nearest < 0) continue;
+    const double deviation = deviation_from_perpendicular_rad(
+        planes[wall].normal, planes[static_cast<std::size_t>(nearest)].normal);
+    if (!gate.holds(true, deviation)) continue;
+    problem.bundle.factors.push_back(
+        std::make_unique<PlanePerpendicular>(static_cast<int>(wall), nearest, PlaneAngle{}));
+  }
+}
+
+}  // namespace vsgraphs
