@@ -7,7 +7,7 @@
 namespace vsgraphs {
 namespace {
 
-constexpr double min_behind_m = 0.08, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0;
+constexpr double min_behind_m = 0.08, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0, min_facing = 0.85;
 
 void count(std::uint16_t& counter) {
   if (counter < std::numeric_limits<std::uint16_t>::max()) ++counter;
@@ -33,11 +33,14 @@ void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid,
   std::vector<Cell> passed;
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = r % 2; c < grid.columns; c += 2) {
-      const Eigen::Vector3d point = grid.at(c, r).point.cast<double>();
+      const SurfaceSample& sample = grid.at(c, r);
+      const Eigen::Vector3d point = sample.point.cast<double>();
       if (point.z() <= 0 || point.z() > max_range_m) continue;
       const double distance = from_camera + normal.dot(point);
       const double sigma = noise.sigma_m(point.z());
-      const bool on = std::abs(distance) < std::max(0.03, on_sigmas * sigma);
+      // Where other surfaces cut the plane there are points on it too, but they face elsewhere.
+      const bool facing = sample.normal.cast<double>().dot(normal) > min_facing;
+      const bool on = facing && std::abs(distance) < std::max(0.03, on_sigmas * sigma);
       const bool behind = distance < -std::max(min_behind_m, behind_sigmas * sigma);
       if (!on && !behind) continue;
       const Eigen::Vector3d meets = world_from_camera * (point * (from_camera / (from_camera - distance)));

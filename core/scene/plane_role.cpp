@@ -96,6 +96,24 @@ double open_outline_share(const PlaneEvidence& evidence) {
   return outline > 0 ? static_cast<double>(open) / outline : 0;
 }
 
+double width_shared_with(const PlaneEvidence& surface, const PlaneEvidence& larger) {
+  const auto& cells = surface.cells();
+  int columns = 0, shared = 0;
+  for (int s = cells.min_s(); s < cells.end_s(); ++s) {
+    const Span rows = solid_rows(surface, s);
+    if (rows.empty()) continue;
+    ++columns;
+    const Eigen::Vector3d middle =
+        surface.frame().point((s + 0.5) * cell_m, 0.5 * cell_m * (rows.low + rows.high + 1));
+    const int column = static_cast<int>(std::floor(larger.frame().coordinates(middle).x() / cell_m));
+    int solid = 0;
+    for (int t = larger.cells().min_t(); t < larger.cells().end_t(); ++t) solid += larger.solid({column, t});
+    constexpr int enough = 2;
+    shared += solid >= enough;
+  }
+  return columns > 0 ? static_cast<double>(shared) / columns : 0;
+}
+
 namespace {
 
 SurfaceRole role_of_upright(const SurfaceFacts& facts, const PlaneEvidence& evidence, const Eigen::Vector3d& up,

@@ -60,6 +60,10 @@ struct SurfaceFacts {
   double camera_height_m = 0;  // mean of the cameras that saw it, along `up`
 };
 
+// Over how much of a surface's width a larger one beside its plane, facing the same way, is seen above or below it: then
+// the larger one is the wall, and this is a cabinet, a radiator or a curtain before it, or a pane in an opening of it.
+double width_shared_with(const PlaneEvidence& surface, const PlaneEvidence& larger);
+
 // `undecided` where too little is known.
 SurfaceRole role_by_geometry(const SurfaceFacts& facts, const PlaneEvidence& evidence,
                              const Eigen::Vector3d& up, const PlaneRoleOptions& options);

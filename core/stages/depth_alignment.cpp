@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stages/plane_alignment.h"
+
 namespace vsgraphs {
 
 namespace {
@@ -73,7 +75,7 @@ DepthAlignment DepthAligner::judge(const DepthGrid& now, const SurfaceReference&
   return result;
 }
 
-DepthAlignment DepthAligner::align(const DepthGrid& now, const SurfaceReference& reference,
+DepthAlignment DepthAligner::align(const Map& map, const DepthGrid& now, const SurfaceReference& reference,
                                    const Se3& initial, std::span<const PoseObservation> features,
                                    const PosePriorTerm& prior) const {
   constexpr int iterations = 8;
@@ -89,6 +91,8 @@ DepthAlignment DepthAligner::align(const DepthGrid& now, const SurfaceReference&
         std::sqrt(std::min(1.0, effective_samples / std::max<double>(1.0, static_cast<double>(rows.size()))));
     std::vector<PointToPlane> weighted = rows;
     for (PointToPlane& row : weighted) row.inv_sigma *= weight;
+    const auto on_planes = rows_on_planes(map, now, pose, std::min(gate, 0.15), camera_.depth_noise);
+    weighted.insert(weighted.end(), on_planes.begin(), on_planes.end());
     PoseSolverOptions options;
     options.rounds = i + 1 < iterations ? 1 : 2;
     options.iterations_per_round = 4;

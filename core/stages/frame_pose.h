@@ -56,8 +56,10 @@ PoseObservation pose_observation(const Camera& camera, const ScalePyramid& pyram
 std::vector<PoseObservation> pose_observations(const Camera& camera, const ScalePyramid& pyramid,
                                                const FeatureSet& features, const FrameMatches& matches);
 
-// Solves for the pose from `initial` and drops outliers from `matches`. Cost: about 0.2 ms for 500 matches.
+// Solves for the pose from `initial` and drops outliers from `matches`. `planes`: samples of the frame's depth on mapped
+// planes, if any. Cost: about 0.2 ms for 500 matches.
 FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, const FeatureSet& features,
-                           const Se3& initial, FrameMatches& matches);
+                           const Se3& initial, FrameMatches& matches,
+                           std::span<const PointToPlane> planes = {});
 
 }  // namespace vsgraphs

@@ -124,6 +124,24 @@ SurfaceFacts SceneBuilder::facts_of(const Map& map, const MappedPlane& plane) co
   return facts;
 }
 
+// Looks for a larger surface close to the plane and parallel to it that shows above or below this one.
+bool SceneBuilder::another_is_the_wall(const Map& map, PlaneId id) const {
+  constexpr double nearest_m = 0.03, farthest_m = 0.8, larger = 1.3, most = 0.5;
+  const MappedPlane& plane = *map.planes().find(id);
+  const PlaneEvidence& evidence = evidence_.at(id);
+  const double area = shape_of(evidence).area_m2;
+  bool found = false;
+  map.planes().for_each([&](PlaneId other_id, const MappedPlane& other) {
+    const auto at = evidence_.find(other_id);
+    if (found || other_id == id || at == evidence_.end()) return;
+    if (!faces_the_same_way(plane.plane, other.plane, options_.association.max_angle_rad)) return;
+    const double gap = std::abs(other.plane.signed_distance(plane.plane.project(plane.plane.anchor)));
+    if (gap < nearest_m || gap > farthest_m || shape_of(at->second).area_m2 < larger * area) return;
+    found = width_shared_with(evidence, at->second) > most;
+  });
+  return found;
+}
+
 void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft) const {
   const Eigen::Vector3d up = *draft.map().up_in_world();
   // Level surfaces first: walls are measured from the ground.
@@ -140,8 +158,9 @@ void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft
       const SurfacePatch& patch = *draft.map().patch(o);
       for (std::size_t r = 0; r < surface_role_count; ++r) votes[r] += patch.votes[r];
     }
-    const SurfaceRole geometric =
+    SurfaceRole geometric =
         role_by_geometry(facts_of(draft.map(), plane), evidence->second, up, options_.role);
+    if (geometric == SurfaceRole::wall && another_is_the_wall(draft.map(), id)) geometric = SurfaceRole::other;
     if (geometric != SurfaceRole::undecided)
       votes[static_cast<std::size_t>(geometric)] += static_cast<float>(options_.geometry_votes);
     SurfaceRole role = SurfaceRole::undecided;

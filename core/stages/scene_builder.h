@@ -50,6 +50,7 @@ class SceneBuilder {
   void find_up_direction(Draft& draft) const;
   void gather_evidence(KeyframeId keyframe, Draft& draft);
   void classify(const std::vector<PlaneId>& candidates, Draft& draft) const;
+  bool another_is_the_wall(const Map& map, PlaneId id) const;
   SurfaceFacts facts_of(const Map& map, const MappedPlane& plane) const;
   void pair_faces(const std::vector<PlaneId>& touched, Draft& draft) const;
   void remove_hidden_landmarks(KeyframeId keyframe, Draft& draft) const;

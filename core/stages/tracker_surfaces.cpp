@@ -46,24 +46,24 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
   const PosePriorTerm prior = motion_prior(predicted_, seconds);
   if (!pose) {
     // Surfaces alone bring the camera near; then the landmarks around can be looked for.
-    const DepthAlignment first = aligner_.align(surface_now(), reference, guess, {}, prior);
+    const DepthAlignment first = aligner_.align(map, surface_now(), reference, guess, {}, prior);
     if (!first.convincing()) return std::nullopt;
     matches_.reset(now_.features->size());
     local_map_.select(map, {}, reference.id, options_.local_keyframes);
     match_local_map(map, first.solution.world_from_camera);
-    return hold_by_surfaces(reference, first.solution.world_from_camera, prior, seconds);
+    return hold_by_surfaces(map, reference, first.solution.world_from_camera, prior, seconds);
   }
-  const auto held = hold_by_surfaces(reference, guess, prior, seconds);
+  const auto held = hold_by_surfaces(map, reference, guess, prior, seconds);
   if (held) return held;
   // A few matches that the surfaces contradict are a coincidence.
   const DepthAlignment judged = aligner_.judge(surface_now(), reference, guess);
   return judged.contradicts() ? std::nullopt : pose;
 }
 
-std::optional<FramePose> Tracker::hold_by_surfaces(const SurfaceReference& reference, const Se3& guess,
+std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const SurfaceReference& reference, const Se3& guess,
                                                    const PosePriorTerm& prior, double seconds) {
   const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
-  const DepthAlignment aligned = aligner_.align(surface_now(), reference, guess, observations, prior);
+  const DepthAlignment aligned = aligner_.align(map, surface_now(), reference, guess, observations, prior);
   const Se3& pose = aligned.solution.world_from_camera;
   if (!aligned.convincing() || !believable(pose, seconds)) return std::nullopt;
   std::vector<std::uint8_t> inlier(observations.size());
