@@ -26,6 +26,7 @@ struct Huber {
   }
 };
 
+inline constexpr Huber huber_1dof{1.959963984540054};   // sqrt(chi2_95_1)
 inline constexpr Huber huber_2dof{2.447746830680816};   // sqrt(chi2_95_2)
 inline constexpr Huber huber_3dof{2.7954834829151074};  // sqrt(chi2_95_3)
 
