@@ -1,6 +1,7 @@
 #include "core/geometry/plane.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace vsgraphs {
 
@@ -30,6 +31,8 @@ Eigen::Vector3d AnchoredPlane::local(const AnchoredPlane& other) const {
   const double scale = sine < 1e-12 ? 1.0 : std::atan2(sine, cosine) / sine;
   Eigen::Vector3d delta;
   delta << scale * t, other.offset_m - offset_m;
+  // The opposite normal is half a turn away in every direction: any one will do, none would be no difference.
+  if (sine < 1e-12 && cosine < 0) delta.head<2>() = Eigen::Vector2d(std::numbers::pi, 0);
   return delta;
 }
 

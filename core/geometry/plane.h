@@ -28,7 +28,8 @@ struct AnchoredPlane {
   }
   // (two angles in the tangent basis of the normal along the great circle, metres of offset).
   AnchoredPlane retract(const Eigen::Vector3d& delta) const;
-  // The delta that retracts this plane to `other`, which must have the same anchor and a normal within pi.
+  // The delta that retracts this plane to `other`, which must have the same anchor. Opposite normals: one of the
+  // half turns between them.
   Eigen::Vector3d local(const AnchoredPlane& other) const;
   // The same plane with its offset measured at `point`.
   AnchoredPlane anchored_at(const Eigen::Vector3d& point) const {

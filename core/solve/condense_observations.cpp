@@ -18,15 +18,8 @@ Quadratic sum_at(const AnchoredPlane& plane, std::span<const WeightedPlane> obse
                  const std::vector<PlaneDifference>& differences, const Huber& robust) {
   Quadratic sum;
   for (std::size_t i = 0; i < differences.size(); ++i) {
-    const PlaneDifference& seen = differences[i];
-    const Eigen::Vector3d& anchor = seen.plane().anchor;
-    Eigen::Matrix<double, 2, 3> tilt;
-    const Eigen::Vector3d residual =
-        seen.sqrt_information() * seen.local(plane.normal, plane.signed_distance(anchor), &tilt);
-    const PlaneByTangent by_tangent(plane, anchor);
     Eigen::Matrix3d jacobian;
-    jacobian << tilt * by_tangent.normal, Eigen::Vector2d::Zero(), by_tangent.offset;
-    jacobian = seen.sqrt_information() * jacobian;
+    const Eigen::Vector3d residual = differences[i].residual(plane, &jacobian);
     const double weight = observations[i].weight * robust.weight(residual.squaredNorm());
     sum.information += weight * jacobian.transpose() * jacobian;
     sum.gradient += weight * jacobian.transpose() * residual;

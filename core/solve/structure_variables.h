@@ -25,7 +25,7 @@ constexpr int dof_of(VariableKind kind) {
 }
 
 struct StructureVariables {
-  std::vector<AnchoredPlane> planes;         // in the world
+  std::vector<AnchoredPlane> planes;       // in the world
   std::vector<Eigen::Vector3d> centroids;  // rooms and floors, m, in the world
   std::vector<Se3> markers;                // world_from_marker
   // Same lengths as above, or empty: nothing fixed.

@@ -14,16 +14,9 @@ class PlanePrior final : public DenseFactor {
       : DenseFactor({{VariableKind::plane, plane}}, 3, robust), known_(known) {}
 
   bool evaluate(const VariableValues& values, bool with_jacobians, FactorRows& out) const override {
-    const AnchoredPlane& plane = values.plane(variables()[0].index);
-    const Eigen::Vector3d& anchor = known_.plane().anchor;
-    Eigen::Matrix<double, 2, 3> tilt;
-    out.residual = known_.sqrt_information() * known_.local(plane.normal, plane.signed_distance(anchor),
-                                                            with_jacobians ? &tilt : nullptr);
-    if (!with_jacobians) return true;
-    const PlaneByTangent by_tangent(plane, anchor);
     Eigen::Matrix3d by_plane;
-    by_plane << tilt * by_tangent.normal, Eigen::Vector2d::Zero(), by_tangent.offset;
-    out.jacobians[0] = known_.sqrt_information() * by_plane;
+    out.residual = known_.residual(values.plane(variables()[0].index), with_jacobians ? &by_plane : nullptr);
+    if (with_jacobians) out.jacobians[0] = by_plane;
     return true;
   }
 

@@ -1,4 +1,5 @@
 #include "core/base/rng.h"
+#include "core/solve/factors/factor_jacobian_test.h"
 #include "core/solve/factors/jacobian_test.h"
 #include "core/solve/factors/point_to_plane.h"
 #include "core/solve/factors/pose_prior.h"
@@ -19,24 +20,8 @@ Matrix6d some_sqrt_information(Rng& rng) {
   return s;
 }
 
-// Checks every Jacobian of a factor on poses against differences.
 void check(const DenseFactor& factor, const std::vector<Se3>& poses) {
-  const StructureVariables none;
-  FactorRows rows;
-  factor.resize(rows);
-  ASSERT_TRUE(factor.evaluate({poses, none}, true, rows));
-  for (std::size_t v = 0; v < factor.variables().size(); ++v) {
-    const auto at = [&](const Eigen::VectorXd& xi) -> Eigen::VectorXd {
-      std::vector<Se3> moved = poses;
-      Se3& pose = moved[static_cast<std::size_t>(factor.variables()[v].index)];
-      pose = pose.retract(xi);
-      FactorRows out;
-      factor.resize(out);
-      EXPECT_TRUE(factor.evaluate({moved, none}, false, out));
-      return out.residual;
-    };
-    expect_jacobian(rows.jacobians[v], at, 1e-7, 1e-3);
-  }
+  expect_factor_jacobians(factor, poses, {});
 }
 
 // Errors from none, through the series' range, to a turn of 2.5 rad.
@@ -85,6 +70,20 @@ TEST(RelativePose, MarkersAndPosesAreTheSameToIt) {
   ASSERT_TRUE(factor.evaluate({poses, structures}, true, rows));
   EXPECT_LT(rows.residual.norm(), 1e-12);
   EXPECT_TRUE(rows.jacobians[1].isApprox(Matrix6d::Identity(), 1e-9));
+}
+
+TEST(RelativePose, JacobiansOfAMarkerAgreeWithDifferences) {
+  Rng rng(6, "pose_factors_test", 0);
+  for (double angle : radians) {
+    const std::vector<Se3> poses{Se3(), Se3::exp(tangent(rng, 2, 1))};
+    StructureVariables structures;
+    structures.markers = {Se3(), Se3(), Se3::exp(tangent(rng, 2, 1))};
+    const Se3 measured =
+        poses[1].inverse() * structures.markers[2] * Se3::exp(tangent(rng, angle > 0 ? 1 : 0, angle));
+    expect_factor_jacobians(RelativePose({VariableKind::pose, 1}, {VariableKind::marker, 2}, measured,
+                                         some_sqrt_information(rng), {2}),
+                            poses, structures);
+  }
 }
 
 TEST(PointToPlaneFactor, JacobianAgreesWithDifferences) {
