@@ -14,8 +14,9 @@ constexpr double jamb_low_m = 0.3, jamb_high_m = 1.9;
 // Counts of rays by where they cross the middle of the wall.
 struct Crossings {
   std::vector<int> along;   // by bins from -reach
+  std::vector<int> jambs;   // rays that ended at the wall beside the opening, same bins
   std::vector<int> up;      // by bins from the ground, middle half of the opening only
-  std::vector<int> lintel;  // rays that ended at the wall, same bins
+  std::vector<int> lintel;  // rays that ended at the wall above it, same bins
   double reach_m = 0;
 };
 
@@ -25,6 +26,7 @@ class DoorRays {
       : opening_(opening), ground_m_(ground_m), options_(options) {
     counts_.reach_m = 0.5 * opening.width_m + aside_m;
     counts_.along.assign(static_cast<std::size_t>(std::ceil(2 * counts_.reach_m / bin_m)), 0);
+    counts_.jambs = counts_.along;
     counts_.up.assign(static_cast<std::size_t>(std::lround(top_m / bin_m)), 0);
     counts_.lintel = counts_.up;
   }
@@ -35,7 +37,8 @@ class DoorRays {
       return;
     if (std::abs(camera.y()) < bin_m) return;
     for (const SurfaceSample& sample : view.depth->samples) {
-      if (!(sample.point.z() > 0) || sample.point.norm() > range_m) continue;
+      if (!(sample.point.z() > 0))
+        continue;  // far readings are welcome: where a ray crosses does not hang on its length
       add(camera, in_opening(view.level_from_camera * sample.point.cast<double>().eval()));
     }
   }
@@ -53,6 +56,8 @@ class DoorRays {
     const double half = 0.5 * opening_.thickness_m;
     const bool middle = std::abs(end.x()) < 0.25 * opening_.width_m;
     if (middle && std::abs(end.y()) <= half + 0.08) count(end.z(), 0, counts_.lintel);
+    if (std::abs(end.y()) <= half + 0.04 && end.z() > jamb_low_m && end.z() < jamb_high_m)
+      count(end.x(), counts_.reach_m, counts_.jambs);
     if (camera.y() * end.y() >= 0 || std::abs(end.y()) < half + options_.behind_m) return;
     const Eigen::Vector3d at = camera + (end - camera) * (camera.y() / (camera.y() - end.y()));
     if (at.z() > jamb_low_m && at.z() < jamb_high_m) count(at.x(), counts_.reach_m, counts_.along);
@@ -81,22 +86,33 @@ std::array<int, 2> run_around(const std::vector<int>& bins, int start, int min_r
   return run;
 }
 
+// The edge between the last bin rays passed and the first one beyond it where they ended at the wall; nothing if none did
+// nearby. An open leaf keeps rays from passing close to its hinge: then the wall is believed half-way.
+std::optional<double> edge_m(const std::vector<int>& ended, int last_passed, int step, int min_rays) {
+  constexpr int reach = 6;
+  for (int i = 1; i <= reach; ++i) {
+    const int bin = last_passed + i * step;
+    if (bin < 0 || bin >= static_cast<int>(ended.size())) break;
+    if (ended[static_cast<std::size_t>(bin)] >= min_rays) return (last_passed + 0.5 + 0.5 * i * step) * bin_m;
+  }
+  return std::nullopt;
+}
+
 void measure(const Crossings& counts, const Opening& opening, const DoorOptions& options, FoundDoor& door) {
   const auto busiest = std::max_element(counts.along.begin(), counts.along.end());
   if (busiest == counts.along.end() || *busiest < options.min_rays) return;
   const std::array<int, 2> run =
       run_around(counts.along, static_cast<int>(busiest - counts.along.begin()), options.min_rays);
-  const double from = run[0] * bin_m - counts.reach_m, to = (run[1] + 1) * bin_m - counts.reach_m;
+  const double from =
+      edge_m(counts.jambs, run[0], -1, options.min_rays).value_or(run[0] * bin_m) - counts.reach_m;
+  const double to =
+      edge_m(counts.jambs, run[1], 1, options.min_rays).value_or((run[1] + 1) * bin_m) - counts.reach_m;
   door.width_m = to - from;
   door.position.head<2>() += 0.5 * (from + to) * opening.along();
 
   const auto eye = static_cast<int>(std::lround(1.3 / bin_m));
-  const int top = run_around(counts.up, eye, options.min_rays)[1] + 1;
-  for (int i = top; i < static_cast<int>(counts.lintel.size()) && i * bin_m < top * bin_m + 0.4; ++i)
-    if (counts.lintel[static_cast<std::size_t>(i)] >= options.min_rays) {
-      door.height_m = 0.5 * (top + i) * bin_m;
-      break;
-    }
+  const int top = run_around(counts.up, eye, options.min_rays)[1];
+  door.height_m = edge_m(counts.lintel, top, 1, options.min_rays);
 }
 
 }  // namespace

@@ -50,6 +50,58 @@ class VoxelWalk {
   int steps_ = 0;
 };
 
+// Finds the bundle that ends in a voxel: open addressing, sized for one keyframe.
+class EndVoxels {
+ public:
+  explicit EndVoxels(std::size_t rays) {
+    std::size_t slots = 64;
+    while (slots < 2 * rays) slots *= 2;
+    slots_.assign(slots, -1);
+    keys_.reserve(rays);
+  }
+  // The number of the voxel among those asked for, counted from 0 in the order they first came.
+  std::size_t number(const Eigen::Vector3i& voxel) {
+    // 21 bits per axis: 200 km at 0.1 m.
+    const auto bits = [](int i) {
+      return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i) & 0x1fffffu);
+    };
+    const std::uint64_t key = bits(voxel.x()) << 42 | bits(voxel.y()) << 21 | bits(voxel.z());
+    std::size_t slot = (key * 0x9e3779b97f4a7c15ULL >> 20) & (slots_.size() - 1);
+    while (slots_[slot] >= 0 && keys_[static_cast<std::size_t>(slots_[slot])] != key)
+      slot = (slot + 1) & (slots_.size() - 1);
+    if (slots_[slot] < 0) {
+      slots_[slot] = static_cast<std::int32_t>(keys_.size());
+      keys_.push_back(key);
+    }
+    return static_cast<std::size_t>(slots_[slot]);
+  }
+
+ private:
+  std::vector<std::int32_t> slots_;
+  std::vector<std::uint64_t> keys_;
+};
+
+// Near surfaces send many rays from one voxel; they are followed once.
+std::vector<RayBundle> bundles_of(const FreeSpace::View& view, const FreeSpaceOptions& options) {
+  std::vector<RayBundle> bundles;
+  EndVoxels ends(view.depth->samples.size());
+  const Se3& pose = view.level_from_camera;
+  for (const SurfaceSample& sample : view.depth->samples) {
+    if (!(sample.point.z() > 0)) continue;
+    const Eigen::Vector3d ray = pose.rotation() * sample.point.cast<double>();
+    const double length = ray.norm();
+    const bool hits = length <= options.range_m;
+    const Eigen::Vector3d to = pose.translation() + (hits ? 1.0 : options.range_m / length) * ray;
+    const Eigen::Vector3i voxel = (to / options.voxel_m).array().floor().cast<int>();
+    const std::size_t number = ends.number(voxel);
+    if (number == bundles.size())
+      bundles.push_back({to, 1, hits});
+    else
+      ++bundles[number].rays;
+  }
+  return bundles;
+}
+
 }  // namespace
 
 FreeSpace::FreeSpace(const FreeSpaceOptions& options) : options_(options) {}
@@ -100,22 +152,15 @@ int FreeSpace::refresh(std::span<const KeyframePose> poses, int max_reintegratio
 
 void FreeSpace::carve(const View& view, int sign) {
   ++version_;
-  const Se3& pose = view.level_from_camera;
-  for (const SurfaceSample& sample : view.depth->samples) {
-    if (!(sample.point.z() > 0)) continue;
-    const Eigen::Vector3d ray = pose.rotation() * sample.point.cast<double>();
-    const double length = ray.norm();
-    const bool hits = length <= options_.range_m;
-    const double share = hits ? 1.0 : options_.range_m / length;
-    carve_ray(pose.translation(), pose.translation() + share * ray, hits, sign);
-  }
+  for (const RayBundle& bundle : bundles_of(view, options_))
+    carve_ray(view.level_from_camera.translation(), bundle, sign);
 }
 
-void FreeSpace::carve_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool hits, int sign) {
-  VoxelWalk walk(voxels_, from / options_.voxel_m, to / options_.voxel_m);
-  const auto change = static_cast<std::uint32_t>(sign);  // wraps around for -1, as unsigned numbers may
+void FreeSpace::carve_ray(const Eigen::Vector3d& from, const RayBundle& bundle, int sign) {
+  VoxelWalk walk(voxels_, from / options_.voxel_m, bundle.to / options_.voxel_m);
+  const std::uint32_t change = sign > 0 ? bundle.rays : 0u - bundle.rays;
   for (int i = 0; i < walk.steps(); ++i, walk.advance()) walk.voxel().passes += change;
-  (hits ? walk.voxel().hits : walk.voxel().passes) += change;
+  (bundle.hits ? walk.voxel().hits : walk.voxel().passes) += change;
 }
 
 }  // namespace vsgraphs

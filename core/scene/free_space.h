@@ -1,7 +1,8 @@
 // Where the camera looked through and where its rays ended: integer counts in a sparse voxel grid, so that what one
 // keyframe contributed can be taken out exactly and put in again where a correction moved it.
 // Ray traversal: Amanatides, Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", Eurographics 1987. Hashed blocks:
-// Niessner et al., "Real-time 3D Reconstruction at Scale using Voxel Hashing", SIGGRAPH Asia 2013.
+// Niessner et al., "Real-time 3D Reconstruction at Scale using Voxel Hashing", SIGGRAPH Asia 2013. Rays that end in one voxel are carved as
+// one: Oleynikova et al., "Voxblox", IROS 2017.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,6 +43,13 @@ struct KeyframePose {
   Se3 level_from_camera;
 };
 
+// Rays of one keyframe that end in one voxel.
+struct RayBundle {
+  Eigen::Vector3d to;  // the first one's end
+  std::uint32_t rays = 0;
+  bool hits = false;  // false: cut off at the range
+};
+
 // Frame: levelled (z up, metres), the caller's. Not thread-safe.
 class FreeSpace {
  public:
@@ -72,7 +80,7 @@ class FreeSpace {
 
  private:
   void carve(const View& view, int sign);
-  void carve_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool hits, int sign);
+  void carve_ray(const Eigen::Vector3d& from, const RayBundle& bundle, int sign);
 
   FreeSpaceOptions options_;
   VoxelBlocks voxels_;

@@ -7,6 +7,8 @@
 namespace vsgraphs {
 namespace {
 
+constexpr double at_ground_m = 0.2, below_m = 0.8;  // layers in which a ground is, or is missing
+
 // Area a face covers seen from above, counted on a coarse raster: points are thinned, so they cannot just be counted.
 double covered_area_m2(const SceneFace& face) {
   constexpr double raster_m = 0.2;
@@ -36,7 +38,7 @@ Layers layers_between(double low_m, double high_m, double voxel_m) {
 }
 
 struct Bands {
-  Layers low, high, lintel;
+  Layers low, high, lintel, ground, below;
 };
 
 // Smallest frame around all blocks that reach into the free band, with a margin of one cell.
@@ -58,8 +60,9 @@ void count_block(const VoxelBlocks::Block& block, const Bands& bands, LevelMap& 
   for (int z = 0; z < edge; ++z) {
     const int layer = block.origin.z() + z;
     const bool low = bands.low.contain(layer), high = bands.high.contain(layer),
-               lintel = bands.lintel.contain(layer);
-    if (!low && !high && !lintel) continue;
+               lintel = bands.lintel.contain(layer), ground = bands.ground.contain(layer),
+               below = bands.below.contain(layer);
+    if (!low && !high && !lintel && !ground && !below) continue;
     for (int y = 0; y < edge; ++y)
       for (int x = 0; x < edge; ++x) {
         const Voxel& voxel = block.at(x, y, z);
@@ -71,11 +74,14 @@ void count_block(const VoxelBlocks::Block& block, const Bands& bands, LevelMap& 
         if (low) ++(occupied ? c.low_occupied : c.low_free);
         if (high) ++(occupied ? c.high_occupied : c.high_free);
         if (lintel) ++(occupied ? c.lintel_occupied : c.lintel_free);
+        if (ground && occupied) ++c.ground_occupied;
+        if (below && !occupied) ++c.below_free;
       }
   }
 }
 
 CellState state_of(const ColumnCounts& c) {
+  if (c.below_free >= 3 && c.ground_occupied == 0) return CellState::blocked;
   if (c.high_occupied >= 2 || (c.high_occupied == 1 && c.high_free < 3)) return CellState::blocked;
   if (c.high_free >= 2) return CellState::open;
   // Seen only below eye level (a camera that looks down).
@@ -125,7 +131,9 @@ LevelMap build_level_map(const VoxelBlocks& voxels, double voxel_m, double groun
   const Bands bands{
       layers_between(ground_m + options.band_low_m, ground_m + options.furniture_m, voxel_m),
       layers_between(ground_m + options.furniture_m, ground_m + options.band_high_m, voxel_m),
-      layers_between(ground_m + options.lintel_low_m, ground_m + options.lintel_high_m, voxel_m)};
+      layers_between(ground_m + options.lintel_low_m, ground_m + options.lintel_high_m, voxel_m),
+      layers_between(ground_m - at_ground_m, ground_m + at_ground_m, voxel_m),
+      layers_between(ground_m - below_m, ground_m - at_ground_m, voxel_m)};
   LevelMap map;
   map.ground_m = ground_m;
   map.frame = frame_of(voxels, voxel_m, bands);

@@ -17,7 +17,8 @@ struct LevelOptions {
   double furniture_m = 1.2;
   double band_high_m = 2.0;
   double lintel_low_m = 2.1;
-  double lintel_high_m = 2.6;
+  double lintel_high_m = 2.35;
+  double wall_high_m = 2.6;
   double min_ground_area_m2 = 1.0;
   double ground_tolerance_m = 0.25;
 };
@@ -29,7 +30,9 @@ void describe(LevelOptions& o, Visitor& field) {
         "what stays below this height above the ground is furniture: it does not bound a room");
   field("band_high_m", o.band_high_m, 1.3, 2.5, "the free band ends this high above the ground");
   field("lintel_low_m", o.lintel_low_m, 1.8, 3.0, "above a door there is wall, sought from this height ...");
-  field("lintel_high_m", o.lintel_high_m, 1.9, 4.0, "... to this one");
+  field("lintel_high_m", o.lintel_high_m, 1.9, 4.0, "... to this one; low ceilings lie above");
+  field("wall_high_m", o.wall_high_m, 1.5, 6.0,
+        "points of walls above this height do not count for a storey");
   field("min_ground_area_m2", o.min_ground_area_m2, 0.1, 20.0, "a storey has a ground at least this large");
   field("ground_tolerance_m", o.ground_tolerance_m, 0.02, 1.0,
         "grounds whose heights differ by less belong to one storey");
@@ -43,6 +46,7 @@ struct ColumnCounts {
   std::uint8_t low_free = 0, low_occupied = 0;    // free band below furniture_m
   std::uint8_t high_free = 0, high_occupied = 0;  // free band above it
   std::uint8_t lintel_free = 0, lintel_occupied = 0;
+  std::uint8_t below_free = 0, ground_occupied = 0;  // under the ground; at its height
 };
 
 enum class CellState : std::uint8_t { unknown, open, blocked };
@@ -51,7 +55,8 @@ struct LevelMap {
   double ground_m = 0;
   GridFrame frame;
   GridValues<ColumnCounts> columns;
-  // open: one can see through at eye level, whatever stands below (tables, chairs); blocked: something is there.
+  // open: one can see through at eye level, whatever stands below (tables, chairs); blocked: something is there, or there is
+  // no ground (a stairwell).
   GridValues<CellState> cells;
   GridValues<char> walls;  // 1: a wall's points lie here, within the free band
 };

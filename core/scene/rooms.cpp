@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <utility>
 
 namespace vsgraphs {
 namespace {
@@ -35,35 +34,48 @@ bool square_to_walls(const SceneFace& face, const std::vector<PlaneId>& walls,
   });
 }
 
-// The face with most points between the room's walls, within a range of heights; the median of their heights.
-std::pair<PlaneId, double> face_between_walls(std::span<const SceneFace> candidates, const FoundRoom& room,
-                                              std::span<const SceneFace> wall_faces, double low_m,
-                                              double high_m, double max_tilt_deg) {
-  PlaneId best;
-  std::vector<double> best_heights;
+struct Level {
+  PlaneId id;
+  double height_m = 0;  // median of the points between the walls
+  std::size_t points = 0;
+};
+
+// The faces with points between the room's walls, within a range of heights.
+std::vector<Level> levels_between_walls(std::span<const SceneFace> candidates, const FoundRoom& room,
+                                        std::span<const SceneFace> wall_faces, double low_m, double high_m,
+                                        double max_tilt_deg) {
+  std::vector<Level> levels;
   for (const SceneFace& face : candidates) {
     if (!square_to_walls(face, room.walls, wall_faces, max_tilt_deg)) continue;
     std::vector<double> heights = heights_inside(face, room.polygon, low_m, high_m);
-    if (heights.size() <= best_heights.size()) continue;
-    best = face.id;
-    best_heights = std::move(heights);
+    if (heights.empty()) continue;
+    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+    std::nth_element(heights.begin(), middle, heights.end());
+    levels.push_back({face.id, *middle, heights.size()});
   }
-  if (best_heights.empty()) return {PlaneId{}, 0};
-  const auto middle = best_heights.begin() + static_cast<std::ptrdiff_t>(best_heights.size() / 2);
-  std::nth_element(best_heights.begin(), middle, best_heights.end());
-  return {best, *middle};
+  return levels;
 }
 
 void add_ground_and_ceiling(const SceneFaces& faces, const RoomOptions& options, FoundRoom& room) {
   constexpr double same_ground_m = 0.3, lowest_ceiling_m = 1.8, highest_ceiling_m = 6.0;
   const double z = room.ground_m;
-  room.ground = face_between_walls(faces.grounds, room, faces.walls, z - same_ground_m, z + same_ground_m,
-                                   options.max_ground_tilt_deg)
-                    .first;
-  const auto [ceiling, height] = face_between_walls(faces.ceilings, room, faces.walls, z + lowest_ceiling_m,
-                                                    z + highest_ceiling_m, options.max_ground_tilt_deg);
-  room.ceiling = ceiling;
-  if (ceiling.valid()) room.height_m = height - z;
+  const auto fewer_points = [](const Level& a, const Level& b) { return a.points < b.points; };
+  const auto grounds = levels_between_walls(faces.grounds, room, faces.walls, z - same_ground_m,
+                                            z + same_ground_m, options.max_ground_tilt_deg);
+  const auto ground = std::max_element(grounds.begin(), grounds.end(), fewer_points);
+  if (ground != grounds.end()) room.ground = ground->id;
+
+  auto ceilings = levels_between_walls(faces.ceilings, room, faces.walls, z + lowest_ceiling_m,
+                                       z + highest_ceiling_m, options.max_ground_tilt_deg);
+  if (ceilings.empty()) return;
+  // The lowest one that is more than a patch: those of higher storeys hang above the same walls.
+  const std::size_t most = std::max_element(ceilings.begin(), ceilings.end(), fewer_points)->points;
+  std::erase_if(ceilings, [&](const Level& level) { return 5 * level.points < most; });
+  const auto ceiling = std::min_element(ceilings.begin(), ceilings.end(), [](const Level& a, const Level& b) {
+    return a.height_m < b.height_m;
+  });
+  room.ceiling = ceiling->id;
+  room.height_m = ceiling->height_m - z;
 }
 
 FoundRoom room_from(const RoomOutline& outline, const Cluster& cluster, double ground_m,

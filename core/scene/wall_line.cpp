@@ -32,13 +32,13 @@ std::optional<WallLine> WallLine::from_face(const SceneFace& face, double ground
   line.from_m_ = 1e9;
   line.to_m_ = -1e9;
   for (const Eigen::Vector3f& p : face.points) {
-    if (p.z() < ground_m || p.z() > ground_m + options.lintel_high_m) continue;
+    if (p.z() < ground_m || p.z() > ground_m + options.wall_high_m) continue;
     const double t = line.coordinate(p.head<2>().cast<double>());
     line.from_m_ = std::min(line.from_m_, t);
     line.to_m_ = std::max(line.to_m_, t);
   }
   if (line.from_m_ > line.to_m_) return std::nullopt;
-  line.mark(face.points, ground_m, ground_m + options.lintel_high_m, line.seen_);
+  line.mark(face.points, ground_m, ground_m + options.wall_high_m, line.seen_);
   line.mark(face.points, ground_m + options.band_low_m, ground_m + options.band_high_m - 0.1,
             line.seen_in_band_);
   return line;

@@ -13,7 +13,7 @@ namespace vsgraphs {
 class WallLine {
  public:
   // Nothing where the face is not vertical within 25 deg or none of its points lies between the level's ground and
-  // lintel_high_m.
+  // wall_high_m.
   static std::optional<WallLine> from_face(const SceneFace& face, double ground_m,
                                            const LevelOptions& options);
 
