@@ -77,7 +77,9 @@ bool divides_rooms(const Narrowing& narrow, const LevelMap& map, std::span<const
   if (narrow.gap.width_m < openings.min_width_m || narrow.gap.width_m > openings.max_width_m) return false;
   const OpeningEvidence evidence = opening_evidence(narrow.gap, map, walls, openings);
   if (evidence.sufficient()) return true;
-  return walls.empty() && evidence.lintel >= 0 &&
+  // Walls that were not made out yet: the shape of the free space has to do, and wall above the gap if walls are known
+  // elsewhere.
+  return evidence.lintel >= (walls.empty() ? 0 : 1) &&
          narrow.lower_peak_m >= options.narrowing * narrow.clearance_m;
 }
 

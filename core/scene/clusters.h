@@ -28,7 +28,7 @@ void describe(ClusterOptions& o, Visitor& field) {
         "things that stand free in a room and are not longer than this do not divide it");
   field("min_persistence_m", o.min_persistence_m, 0.05, 1.0,
         "clearance must grow by this on both sides of a narrow place that divides rooms");
-  field("narrowing", o.narrowing, 1.0, 5.0, "... and by this factor, as long as nothing is known of walls");
+  field("narrowing", o.narrowing, 1.0, 5.0, "... and by this factor where the walls beside it are not known");
 }
 
 struct Cluster {

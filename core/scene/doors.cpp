@@ -89,7 +89,7 @@ std::array<int, 2> run_around(const std::vector<int>& bins, int start, int min_r
 // The edge between the last bin rays passed and the first one beyond it where they ended at the wall; nothing if none did
 // nearby. An open leaf keeps rays from passing close to its hinge: then the wall is believed half-way.
 std::optional<double> edge_m(const std::vector<int>& ended, int last_passed, int step, int min_rays) {
-  constexpr int reach = 6;
+  constexpr int reach = 4;
   for (int i = 1; i <= reach; ++i) {
     const int bin = last_passed + i * step;
     if (bin < 0 || bin >= static_cast<int>(ended.size())) break;

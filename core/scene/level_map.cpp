@@ -104,25 +104,17 @@ void block_walls(std::span<const SceneFace> walls, const LevelOptions& options, 
 }  // namespace
 
 std::vector<double> level_heights(std::span<const SceneFace> grounds, const LevelOptions& options) {
-  struct Ground {
-    double height, weight;
-  };
-  std::vector<Ground> sorted;
+  std::vector<std::pair<double, double>> by_area;  // (-area, height)
   for (const SceneFace& face : grounds)
-    if (covered_area_m2(face) >= options.min_ground_area_m2)
-      sorted.push_back({mean_height(face), covered_area_m2(face)});
-  std::sort(sorted.begin(), sorted.end(),
-            [](const Ground& a, const Ground& b) { return a.height < b.height; });
+    if (const double area = covered_area_m2(face); area >= options.min_ground_area_m2)
+      by_area.emplace_back(-area, mean_height(face));
+  std::sort(by_area.begin(), by_area.end());
   std::vector<double> levels;
-  for (std::size_t i = 0; i < sorted.size();) {
-    double sum = 0, weight = 0;
-    const double first = sorted[i].height;
-    for (; i < sorted.size() && sorted[i].height - first <= options.ground_tolerance_m; ++i) {
-      sum += sorted[i].weight * sorted[i].height;
-      weight += sorted[i].weight;
-    }
-    levels.push_back(sum / weight);
-  }
+  for (const auto& [area, height] : by_area)
+    if (std::none_of(levels.begin(), levels.end(),
+                     [&, z = height](double level) { return std::abs(level - z) < options.min_storey_m; }))
+      levels.push_back(height);
+  std::sort(levels.begin(), levels.end());
   return levels;
 }
 

@@ -20,7 +20,7 @@ struct LevelOptions {
   double lintel_high_m = 2.35;
   double wall_high_m = 2.6;
   double min_ground_area_m2 = 1.0;
-  double ground_tolerance_m = 0.25;
+  double min_storey_m = 1.8;
 };
 
 template <typename Visitor>
@@ -34,11 +34,12 @@ void describe(LevelOptions& o, Visitor& field) {
   field("wall_high_m", o.wall_high_m, 1.5, 6.0,
         "points of walls above this height do not count for a storey");
   field("min_ground_area_m2", o.min_ground_area_m2, 0.1, 20.0, "a storey has a ground at least this large");
-  field("ground_tolerance_m", o.ground_tolerance_m, 0.02, 1.0,
-        "grounds whose heights differ by less belong to one storey");
+  field("min_storey_m", o.min_storey_m, 0.5, 5.0,
+        "grounds closer above each other than this are one storey: the largest stands for it");
 }
 
-// Heights of the storeys, ascending: means of the heights of ground faces, weighted by their points.
+// Heights of the storeys, ascending. A table top or a landing taken for ground does not make a storey: it is too close to
+// a larger one.
 std::vector<double> level_heights(std::span<const SceneFace> grounds, const LevelOptions& options);
 
 // Voxels of one column, counted by height above the ground.

@@ -67,7 +67,7 @@ int lintel_evidence(const Opening& opening, const LevelMap& map) {
   return 2 * free >= samples ? -1 : 0;
 }
 
-// Widens or narrows nothing: the stretch between the first and last place one sees through.
+// The stretch between the first and last place one sees through.
 std::optional<Opening> opening_between(const WallLine& wall, double from, double to,
                                        const OpeningOptions& options) {
   const double width = to - from;

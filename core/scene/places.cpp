@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 
 namespace vsgraphs {
 namespace {
@@ -55,18 +56,46 @@ class PlaceBuilder {
     places_.push_back({{at.x(), at.y(), map_.ground_m}, clearance_m, room, {}});
   }
 
-  void join() {
+  struct Edge {
+    double length;
+    std::uint32_t a, b;
+    auto operator<=>(const Edge&) const = default;
+  };
+
+  std::vector<Edge> possible_edges() const {
+    std::vector<Edge> edges;
     for (std::uint32_t a = 0; a < places_.size(); ++a)
       for (std::uint32_t b = a + 1; b < places_.size(); ++b) {
-        Place &p = places_[a], &q = places_[b];
+        const Place &p = places_[a], &q = places_[b];
         if (p.room != q.room && p.room != no_room && q.room != no_room) continue;
+        const double length = (p.position - q.position).norm();
         const double reach =
             1.2 * (std::max(options_.spacing_m, p.clearance_m) + std::max(options_.spacing_m, q.clearance_m));
-        if ((p.position - q.position).norm() > reach) continue;
-        if (!sees(map_, clusters_, p.position.head<2>(), q.position.head<2>())) continue;
-        p.neighbours.push_back(b);
-        q.neighbours.push_back(a);
+        if (length <= reach && sees(map_, clusters_, p.position.head<2>(), q.position.head<2>()))
+          edges.push_back({length, a, b});
       }
+    return edges;
+  }
+
+  // An edge goes if two shorter ones lead the same way: what is connected stays connected.
+  void join() {
+    std::vector<Edge> edges = possible_edges();
+    std::sort(edges.begin(), edges.end());
+    std::vector<std::vector<Edge>> shorter(places_.size());  // from each place, by what has been looked at
+    const auto joined = [&](std::uint32_t a, std::uint32_t b) {
+      return std::any_of(shorter[a].begin(), shorter[a].end(),
+                         [&](const Edge& e) { return e.a == b || e.b == b; });
+    };
+    for (const Edge& edge : edges) {
+      const bool detour = std::any_of(shorter[edge.a].begin(), shorter[edge.a].end(), [&](const Edge& e) {
+        return joined(edge.b, e.a == edge.a ? e.b : e.a);
+      });
+      shorter[edge.a].push_back(edge);
+      shorter[edge.b].push_back(edge);
+      if (detour) continue;
+      places_[edge.a].neighbours.push_back(edge.b);
+      places_[edge.b].neighbours.push_back(edge.a);
+    }
     for (Place& p : places_) std::sort(p.neighbours.begin(), p.neighbours.end());
   }
 

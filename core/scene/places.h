@@ -1,5 +1,6 @@
 // Places: a sparse graph of points with free space around them, each in its room. (The place layer of Hughes, Chang,
-// Carlone, "Hydra", RSS 2022, here on the ground plan.)
+// Carlone, "Hydra", RSS 2022, here on the ground plan; edges as in Toussaint, "The relative neighbourhood graph of a finite planar set", Pattern Recognition
+// 1980.)
 #pragma once
 
 #include <span>

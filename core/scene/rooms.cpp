@@ -57,16 +57,20 @@ std::vector<Level> levels_between_walls(std::span<const SceneFace> candidates, c
 }
 
 void add_ground_and_ceiling(const SceneFaces& faces, const RoomOptions& options, FoundRoom& room) {
-  constexpr double same_ground_m = 0.3, lowest_ceiling_m = 1.8, highest_ceiling_m = 6.0;
-  const double z = room.ground_m;
+  constexpr double ground_reach_m = 0.9, lowest_ceiling_m = 1.8, highest_ceiling_m = 6.0;
+  const double storey_m = room.ground_m;
   const auto fewer_points = [](const Level& a, const Level& b) { return a.points < b.points; };
-  const auto grounds = levels_between_walls(faces.grounds, room, faces.walls, z - same_ground_m,
-                                            z + same_ground_m, options.max_ground_tilt_deg);
+  const auto grounds = levels_between_walls(faces.grounds, room, faces.walls, storey_m - ground_reach_m,
+                                            storey_m + ground_reach_m, options.max_ground_tilt_deg);
   const auto ground = std::max_element(grounds.begin(), grounds.end(), fewer_points);
-  if (ground != grounds.end()) room.ground = ground->id;
+  if (ground != grounds.end()) {
+    room.ground = ground->id;
+    room.ground_m = ground->height_m;
+    room.centroid.z() = ground->height_m;
+  }
 
-  auto ceilings = levels_between_walls(faces.ceilings, room, faces.walls, z + lowest_ceiling_m,
-                                       z + highest_ceiling_m, options.max_ground_tilt_deg);
+  auto ceilings = levels_between_walls(faces.ceilings, room, faces.walls, storey_m + lowest_ceiling_m,
+                                       storey_m + highest_ceiling_m, options.max_ground_tilt_deg);
   if (ceilings.empty()) return;
   // The lowest one that is more than a patch: those of higher storeys hang above the same walls.
   const std::size_t most = std::max_element(ceilings.begin(), ceilings.end(), fewer_points)->points;
@@ -75,7 +79,7 @@ void add_ground_and_ceiling(const SceneFaces& faces, const RoomOptions& options,
     return a.height_m < b.height_m;
   });
   room.ceiling = ceiling->id;
-  room.height_m = ceiling->height_m - z;
+  room.height_m = ceiling->height_m - room.ground_m;
 }
 
 FoundRoom room_from(const RoomOutline& outline, const Cluster& cluster, double ground_m,
