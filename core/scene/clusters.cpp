@@ -83,6 +83,22 @@ bool divides_rooms(const Narrowing& narrow, const LevelMap& map, std::span<const
          narrow.lower_peak_m >= options.narrowing * narrow.clearance_m;
 }
 
+// The label nearest to a camera: it does not see the column it stands in.
+int label_near(const GridFrame& frame, const GridValues<int>& labels, const Eigen::Vector2d& camera) {
+  constexpr int reach = 5;
+  int best = -1, best_squared = reach * reach + 1;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const Eigen::Vector2i cell = frame.cell_at(camera) + Eigen::Vector2i(dx, dy);
+      if (!frame.inside(cell) || dx * dx + dy * dy >= best_squared) continue;
+      const int label = labels[static_cast<std::size_t>(frame.index(cell))];
+      if (label < 0) continue;
+      best = label;
+      best_squared = dx * dx + dy * dy;
+    }
+  return best;
+}
+
 // Measures the basins and keeps those large enough, in the order of their labels.
 void keep_clusters(const GridFrame& frame, const Basins& basins, std::span<const Eigen::Vector2d> cameras,
                    double min_area_m2, Clusters& result) {
@@ -96,11 +112,9 @@ void keep_clusters(const GridFrame& frame, const Basins& basins, std::span<const
     cluster.max_clearance_m =
         std::max<double>(cluster.max_clearance_m, result.clearance_m[static_cast<std::size_t>(i)]);
   }
-  for (const Eigen::Vector2d& camera : cameras) {
-    const int index = frame.index_at(camera);
-    const int label = index < 0 ? -1 : basins.labels[static_cast<std::size_t>(index)];
-    if (label >= 0) all[static_cast<std::size_t>(label)].visited = true;
-  }
+  for (const Eigen::Vector2d& camera : cameras)
+    if (const int label = label_near(frame, basins.labels, camera); label >= 0)
+      all[static_cast<std::size_t>(label)].visited = true;
   std::vector<int> kept(all.size(), -1);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].area_m2 < min_area_m2) continue;

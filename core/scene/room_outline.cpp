@@ -148,9 +148,11 @@ class OutlineProblem {
     const Arrangement::Face& face = arrangement.faces()[static_cast<std::size_t>(f)];
     for (std::size_t e = 0; e < face.corners.size(); ++e) {
       const int other = arrangement.neighbour(f, static_cast<int>(e));
-      if (other < f) continue;  // each pair once, and nothing beyond the rectangle
       const Eigen::Vector2d &a = face.corners[e], &b = face.corners[(e + 1) % face.corners.size()];
-      cut.add_edge_cost(f, other, edge_cost(a, b), edge_cost(b, a));
+      if (other < 0)
+        cut.add_node_cost(f, edge_cost(a, b), 0);  // nothing is inside beyond the rectangle
+      else if (other > f)                          // each pair once
+        cut.add_edge_cost(f, other, edge_cost(a, b), edge_cost(b, a));
     }
   }
 
