@@ -1,0 +1,34 @@
+// Doors and passages: the openings between two rooms, measured by the rays that went through them. (Beyond the paper.)
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/options.h"
+#include "core/scene/clusters.h"
+#include "core/scene/found_structure.h"
+#include "core/scene/free_space.h"
+#include "core/scene/rooms.h"
+
+namespace vsgraphs {
+
+struct DoorOptions {
+  int min_rays = 3;
+  double behind_m = 0.15;
+};
+
+template <typename Visitor>
+void describe(DoorOptions& o, Visitor& field) {
+  field("min_rays", o.min_rays, 1, 100, "rays through a strip of 5 cm that make it part of an opening");
+  field("behind_m", o.behind_m, 0.02, 1.0, "a ray went through if it ended this far behind the wall");
+}
+
+// Doors between two different rooms. Costs about 20 us per door and keyframe near it.
+std::vector<FoundDoor> find_doors(const LevelMap& map, const Clusters& clusters, const RoomsOfLevel& rooms,
+                                  const std::map<KeyframeId, FreeSpace::View>& views,
+                                  const DoorOptions& options);
+
+}  // namespace vsgraphs

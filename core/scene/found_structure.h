@@ -1,0 +1,62 @@
+// What recognition of structural elements finds: rooms, doors, floors and places to be. Plain values, in the levelled
+// frame (z up, metres).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/polygon.h"
+#include "core/map/ids.h"
+
+namespace vsgraphs {
+
+// Names a room for as long as it is recognised again; never given to another one.
+using RoomNumber = std::uint32_t;
+inline constexpr RoomNumber no_room = 0xffffffffu;
+
+enum class RoomKind : std::uint8_t { room, corridor };
+
+struct FoundRoom {
+  RoomNumber number = no_room;
+  std::vector<PlaneId> walls;  // faces that bound it, ascending; a face may bound several rooms
+  PlaneId ground, ceiling;     // not valid: not known
+  Polygon2 polygon;            // counter-clockwise, on the walls' inner faces
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the polygon, on the ground
+  double ground_m = 0;
+  double area_m2 = 0;
+  std::optional<double> height_m;  // ground to ceiling, where a ceiling was seen
+  RoomKind kind = RoomKind::room;
+  double closed_share = 0;             // of the outline: by wall that was seen, or by an opening
+  bool partial = false;                // too little of the outline is closed to trust its shape
+  bool visited = false;                // the camera has been inside
+  std::vector<RoomNumber> neighbours;  // through openings, ascending
+};
+
+struct FoundDoor {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // middle of the threshold, on the ground
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();   // unit, horizontal, from rooms[0] to rooms[1]
+  double width_m = 0;
+  std::optional<double> height_m;  // where rays passed below its upper edge
+  double thickness_m = 0;          // of the wall; 0: only one face is known
+  std::array<RoomNumber, 2> rooms{no_room, no_room};
+};
+
+struct FoundFloor {
+  double ground_m = 0;
+  std::vector<RoomNumber> rooms;                       // ascending
+  std::vector<PlaneId> grounds;                        // ascending: coplanar within tolerance
+  std::vector<Polygon2> extent;                        // of its rooms; they do not overlap
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // mean of its rooms' centroids
+};
+
+// A place to be: a point with free space around it. Edges lead over free ground.
+struct Place {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // at the height of the ground
+  double clearance_m = 0;
+  RoomNumber room = no_room;              // no_room: in a doorway or outside all rooms
+  std::vector<std::uint32_t> neighbours;  // indices, ascending
+};
+
+}  // namespace vsgraphs

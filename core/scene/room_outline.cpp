@@ -1,0 +1,273 @@
+#include "core/scene/room_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/scene/min_cut.h"
+
+namespace vsgraphs {
+namespace {
+
+constexpr double step_m = 0.1;           // at which walls and edges are looked at
+constexpr double seen_edge_cost = 0.02;  // per metre; not 0: of two outlines along walls the shorter one
+constexpr double free_edge_cost = 1.0;   // per metre of outline across the cluster's own free space
+constexpr double margin_m = 1.0;
+
+double area_of(const Polygon2& p) { return signed_area(p); }
+
+// Everything the prices depend on.
+class OutlineProblem {
+ public:
+  OutlineProblem(int cluster, const LevelMap& map, const Clusters& clusters, std::span<const WallLine> walls,
+                 std::span<const std::size_t> nearby, const OutlineOptions& options)
+      : cluster_(cluster),
+        map_(map),
+        clusters_(clusters),
+        walls_(walls),
+        nearby_(nearby),
+        options_(options) {}
+
+  RoomOutline solve() {
+    measure_cluster();
+    std::vector<PlanLine> lines = lines_of_walls();
+    add_openings(lines);
+    add_bounds(lines);
+    const Arrangement arrangement(low_ - Eigen::Vector2d::Constant(margin_m),
+                                  high_ + Eigen::Vector2d::Constant(margin_m), lines);
+    RoomOutline outline;
+    outline.edges = arrangement.outline(choose_faces(arrangement));
+    describe(lines, outline);
+    return outline;
+  }
+
+ private:
+  void measure_cluster() {
+    for (int i = 0; i < map_.frame.size(); ++i)
+      if (label(i) == cluster_) cells_.push_back(map_.frame.center(i));
+    low_ = high_ = cells_.front();
+    for (const Eigen::Vector2d& p : cells_) {
+      low_ = low_.cwiseMin(p);
+      high_ = high_.cwiseMax(p);
+    }
+  }
+
+  int label(int index) const { return index < 0 ? -1 : clusters_.labels[static_cast<std::size_t>(index)]; }
+
+  bool same_line(const PlanLine& line, const Eigen::Vector2d& normal, const Eigen::Vector2d& middle) const {
+    const double cosine = std::cos(options_.same_line_deg * std::numbers::pi / 180);
+    return std::abs(line.normal.dot(normal)) >= cosine &&
+           std::abs(line.distance(middle)) <= options_.same_line_m;
+  }
+
+  // The longest wall on a line says where it runs.
+  std::vector<PlanLine> lines_of_walls() const {
+    std::vector<std::size_t> order(nearby_.begin(), nearby_.end());
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return walls_[a].seen_m() > walls_[b].seen_m(); });
+    std::vector<PlanLine> lines;
+    for (const std::size_t w : order) {
+      const WallLine& wall = walls_[w];
+      const bool known = std::any_of(lines.begin(), lines.end(), [&](const PlanLine& line) {
+        return same_line(line, wall.normal(), wall.middle());
+      });
+      if (!known && lines.size() < Arrangement::max_lines - 8)
+        lines.push_back({wall.normal(), -wall.normal().dot(wall.middle())});
+    }
+    return lines;
+  }
+
+  // An opening whose wall was not made out closes the room all the same.
+  void add_openings(std::vector<PlanLine>& lines) const {
+    for (const ClusterOpening& o : clusters_.openings) {
+      if (o.clusters[0] != cluster_ && o.clusters[1] != cluster_) continue;
+      const double side = o.clusters[1] == cluster_ ? 1 : -1;
+      const Eigen::Vector2d threshold =
+          o.opening.center + 0.5 * side * o.opening.thickness_m * o.opening.normal;
+      add_unless_near(lines, o.opening.normal, threshold, 0.3);
+    }
+  }
+
+  void add_unless_near(std::vector<PlanLine>& lines, const Eigen::Vector2d& normal,
+                       const Eigen::Vector2d& point, double near_m) const {
+    const bool near = std::any_of(lines.begin(), lines.end(), [&](const PlanLine& line) {
+      return std::abs(line.normal.dot(normal)) > 0.9 && std::abs(line.distance(point)) <= near_m;
+    });
+    if (!near && lines.size() < Arrangement::max_lines) lines.push_back({normal, -normal.dot(point)});
+  }
+
+  // Where no wall was seen the room ends where free space does, in the direction most of its walls have.
+  void add_bounds(std::vector<PlanLine>& lines) const {
+    double cosine = 0, sine = 0;  // of four times the angle: walls square to one another agree
+    for (const std::size_t w : nearby_) {
+      const double angle = 4 * std::atan2(walls_[w].normal().y(), walls_[w].normal().x());
+      cosine += walls_[w].seen_m() * std::cos(angle);
+      sine += walls_[w].seen_m() * std::sin(angle);
+    }
+    const double turn = 0.25 * std::atan2(sine, cosine);
+    const std::size_t trimmed = cells_.size() / 100;  // a few rays stray
+    for (int k = 0; k < 4; ++k) {
+      const double angle = turn + k * std::numbers::pi / 2;
+      const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
+      std::vector<double> reach;
+      for (const Eigen::Vector2d& p : cells_) reach.push_back(outward.dot(p));
+      std::nth_element(reach.begin(), reach.end() - 1 - static_cast<std::ptrdiff_t>(trimmed), reach.end());
+      const double farthest = reach[reach.size() - 1 - trimmed] + 0.5 * map_.frame.cell_m;
+      const bool bounded = std::any_of(lines.begin(), lines.end(), [&](const PlanLine& line) {
+        return std::abs(line.normal.dot(outward)) > 0.9 &&
+               std::abs(farthest + line.offset_m * line.normal.dot(outward)) < 0.6;
+      });
+      if (!bounded && lines.size() < Arrangement::max_lines) lines.push_back({-outward, farthest});
+    }
+  }
+
+  std::vector<char> choose_faces(const Arrangement& arrangement) const {
+    const auto& faces = arrangement.faces();
+    std::vector<double> own(faces.size(), 0), others(faces.size(), 0);
+    for (int i = 0; i < map_.frame.size(); ++i) {
+      if (label(i) < 0) continue;
+      const Eigen::Vector2d center = map_.frame.center(i);
+      if ((center.array() < low_.array() - margin_m).any() ||
+          (center.array() > high_.array() + margin_m).any())
+        continue;
+      const int face = arrangement.face_at(center);
+      if (face >= 0)
+        (label(i) == cluster_ ? own : others)[static_cast<std::size_t>(face)] += map_.frame.cell_area_m2();
+    }
+    MinCut cut(static_cast<int>(faces.size()));
+    for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
+      const auto i = static_cast<std::size_t>(f);
+      const double unknown = std::max(0.0, area_of(faces[i].corners) - own[i] - others[i]);
+      cut.add_node_cost(f, others[i] + options_.unknown_cost * unknown, own[i]);
+      add_edge_costs(arrangement, f, cut);
+    }
+    return cut.solve();
+  }
+
+  void add_edge_costs(const Arrangement& arrangement, int f, MinCut& cut) const {
+    const Arrangement::Face& face = arrangement.faces()[static_cast<std::size_t>(f)];
+    for (std::size_t e = 0; e < face.corners.size(); ++e) {
+      const int other = arrangement.neighbour(f, static_cast<int>(e));
+      const Eigen::Vector2d &a = face.corners[e], &b = face.corners[(e + 1) % face.corners.size()];
+      if (other < 0)
+        cut.add_node_cost(f, edge_cost(a, b), 0);  // nothing is inside beyond the rectangle
+      else if (other > f)                          // each pair once
+        cut.add_edge_cost(f, other, edge_cost(a, b), edge_cost(b, a));
+    }
+  }
+
+  // Of an outline that runs from a to b with the room on its left.
+  double edge_cost(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    const double length = (b - a).norm();
+    const int pieces = std::max(1, static_cast<int>(std::lround(length / step_m)));
+    double cost = 0;
+    for (int i = 0; i < pieces; ++i) {
+      const Eigen::Vector2d from = a + (b - a) * i / pieces, to = a + (b - a) * (i + 1) / pieces;
+      if (closed(from, to))
+        cost += seen_edge_cost;
+      else
+        cost += across_free_space(from, to) ? free_edge_cost : options_.unseen_edge_cost;
+    }
+    return cost * length / pieces;
+  }
+
+  bool across_free_space(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    const Eigen::Vector2d middle = 0.5 * (a + b), way = (b - a).normalized();
+    const Eigen::Vector2d left(-way.y(), way.x());
+    const double reach = 1.5 * map_.frame.cell_m;
+    return label(map_.frame.index_at(middle + reach * left)) == cluster_ &&
+           label(map_.frame.index_at(middle - reach * left)) == cluster_;
+  }
+
+  bool closed(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    return std::any_of(nearby_.begin(), nearby_.end(),
+                       [&](std::size_t w) { return wall_covers(walls_[w], a, b); }) ||
+           opening_covers(0.5 * (a + b));
+  }
+
+  bool wall_covers(const WallLine& wall, const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    if (wall.along().dot(b - a) < 0.95 * (b - a).norm()) return false;
+    if (std::abs(wall.distance(0.5 * (a + b))) > options_.same_line_m + 0.03) return false;
+    const double from = wall.coordinate(a), to = wall.coordinate(b);
+    return wall.seen_m(from, to, false) > 0.5 * (to - from);
+  }
+
+  bool opening_covers(const Eigen::Vector2d& p) const {
+    return std::any_of(clusters_.openings.begin(), clusters_.openings.end(), [&](const ClusterOpening& o) {
+      const Eigen::Vector2d to = p - o.opening.center;
+      return std::abs(to.dot(o.opening.along())) <= 0.5 * o.opening.width_m + 0.1 &&
+             std::abs(to.dot(o.opening.normal)) <= 0.5 * o.opening.thickness_m + 0.3;
+    });
+  }
+
+  void describe(const std::vector<PlanLine>&, RoomOutline& outline) const {
+    std::vector<double> bounding(walls_.size(), 0);
+    for (const OutlineEdge& edge : outline.edges) {
+      const double length = (edge.to - edge.from).norm();
+      const int pieces = std::max(1, static_cast<int>(std::lround(length / step_m)));
+      outline.perimeter_m += length;
+      for (int i = 0; i < pieces; ++i) {
+        const Eigen::Vector2d a = edge.from + (edge.to - edge.from) * i / pieces,
+                              b = edge.from + (edge.to - edge.from) * (i + 1) / pieces;
+        if (closed(a, b)) outline.closed_m += length / pieces;
+        for (const std::size_t w : nearby_)
+          if (wall_covers(walls_[w], a, b)) bounding[w] += length / pieces;
+      }
+    }
+    for (std::size_t w = 0; w < bounding.size(); ++w)
+      if (bounding[w] >= options_.min_wall_m) outline.walls.push_back(w);
+  }
+
+  int cluster_;
+  const LevelMap& map_;
+  const Clusters& clusters_;
+  std::span<const WallLine> walls_;
+  std::span<const std::size_t> nearby_;
+  const OutlineOptions& options_;
+  std::vector<Eigen::Vector2d> cells_;
+  Eigen::Vector2d low_, high_;
+};
+
+// The cluster one meets on the way from a wall into the room, -1 if another wall or nothing comes first.
+int cluster_before(const LevelMap& map, const Clusters& clusters, const WallLine& wall, double coordinate,
+                   double proximity_m) {
+  const double step = 0.5 * map.frame.cell_m;
+  for (double d = step; d <= proximity_m; d += step) {
+    const int index = map.frame.index_at(wall.point(coordinate) + d * wall.normal());
+    if (index < 0) return -1;
+    const int label = clusters.labels[static_cast<std::size_t>(index)];
+    if (label >= 0) return label;
+    if (d > 2.5 * map.frame.cell_m && map.walls[static_cast<std::size_t>(index)]) return -1;
+  }
+  return -1;
+}
+
+}  // namespace
+
+Polygon2 RoomOutline::polygon() const {
+  Polygon2 polygon;
+  for (const OutlineEdge& edge : edges) polygon.push_back(edge.from);
+  return polygon;
+}
+
+std::vector<std::size_t> walls_around(int cluster, const LevelMap& map, const Clusters& clusters,
+                                      std::span<const WallLine> walls, const OutlineOptions& options) {
+  std::vector<std::size_t> around;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    double near_m = 0;
+    for (double t = walls[w].from_m() + 0.5 * step_m; t < walls[w].to_m() + 0.5 * step_m; t += step_m)
+      if (walls[w].seen_m(t - 0.5 * step_m, t + 0.5 * step_m, false) > 0 &&
+          cluster_before(map, clusters, walls[w], t, options.proximity_m) == cluster)
+        near_m += step_m;
+    if (near_m >= options.min_wall_m) around.push_back(w);
+  }
+  return around;
+}
+
+RoomOutline outline_room(int cluster, const LevelMap& map, const Clusters& clusters,
+                         std::span<const WallLine> walls, std::span<const std::size_t> nearby,
+                         const OutlineOptions& options) {
+  return OutlineProblem(cluster, map, clusters, walls, nearby, options).solve();
+}
+
+}  // namespace vsgraphs

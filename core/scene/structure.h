@@ -1,0 +1,46 @@
+// Recognition of structural elements: from free space and classified surfaces to rooms, doors, floors and places.
+// vS-Graphs, section "Structural Element Recognition".
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/scene/clusters.h"
+#include "core/scene/doors.h"
+#include "core/scene/floors.h"
+#include "core/scene/found_structure.h"
+#include "core/scene/free_space.h"
+#include "core/scene/level_map.h"
+#include "core/scene/openings.h"
+#include "core/scene/places.h"
+#include "core/scene/room_outline.h"
+#include "core/scene/rooms.h"
+#include "core/scene/surfaces.h"
+
+namespace vsgraphs {
+
+struct StructureOptions {
+  LevelOptions level;
+  OpeningOptions opening;
+  ClusterOptions cluster;
+  OutlineOptions outline;
+  RoomOptions room;
+  DoorOptions door;
+  FloorOptions floor;
+  PlaceOptions place;
+};
+
+struct FoundStructure {
+  std::vector<FoundRoom> rooms;  // by storey, ascending
+  std::vector<FoundDoor> doors;
+  std::vector<FoundFloor> floors;
+  std::vector<Place> places;
+  RoomNumber next_number = 0;  // the first number never given to a room
+};
+
+// One pass over everything known, all in one levelled frame. `previous`: what the last pass found (its rooms keep their
+// numbers). Nothing is found before there is a ground. Pure: the same input gives the same output.
+FoundStructure recognise_structure(const FreeSpace& free_space, const SceneFaces& faces,
+                                   const FoundStructure& previous, const StructureOptions& options);
+
+}  // namespace vsgraphs
