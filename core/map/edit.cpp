@@ -144,6 +144,24 @@ class Fnv1a {
     number(op.thickness_m);
   }
   void operator()(const SetUp& op) { matrix(op.up_in_world); }
+  void operator()(const SetStructure& op) {
+    pose(op.structure->level_from_world);
+    for (const FoundRoom& room : op.structure->rooms) {
+      word(room.number);
+      for (const PlaneId wall : room.walls) id(wall);
+      for (const Eigen::Vector2d& corner : room.polygon) matrix(corner);
+    }
+    for (const FoundDoor& door : op.structure->doors) {
+      matrix(door.position);
+      number(door.width_m);
+    }
+    for (const FoundFloor& floor : op.structure->floors) matrix(floor.centroid);
+    for (const Place& place : op.structure->places) matrix(place.position);
+  }
+  void operator()(const MoveStructureNodes& op) {
+    for (const Eigen::Vector3d& node : op.rooms) matrix(node);
+    for (const Eigen::Vector3d& node : op.floors) matrix(node);
+  }
 
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;

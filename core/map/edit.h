@@ -10,6 +10,7 @@
 #include "core/map/keyframe.h"
 #include "core/map/landmark.h"
 #include "core/map/mapped_plane.h"
+#include "core/map/structure.h"
 
 namespace vsgraphs {
 
@@ -109,11 +110,20 @@ struct SetUp {
   Eigen::Vector3d up_in_world;
 };
 
+// Rooms, floors, doors and places, all of them, in place of what was known before.
+struct SetStructure {
+  std::shared_ptr<const FoundStructure> structure;
+};
+// Of as many rooms and floors as there are; otherwise it does nothing (they were found anew meanwhile).
+struct MoveStructureNodes {
+  std::vector<Eigen::Vector3d> rooms, floors;
+};
+
 using EditOperation =
     std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
                  RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings, SetPatches,
                  AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation, MovePlane,
-                 ClassifyPlane, PairFaces, SetUp>;
+                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

@@ -11,6 +11,7 @@
 #include "core/map/keyframe.h"
 #include "core/map/landmark.h"
 #include "core/map/mapped_plane.h"
+#include "core/map/structure.h"
 #include "core/map/table.h"
 
 namespace vsgraphs {
@@ -30,6 +31,8 @@ class Map {
   const Planes& planes() const { return planes_; }
   // Unit vector against gravity; empty until ground and walls have agreed on it.
   const std::optional<Eigen::Vector3d>& up_in_world() const { return up_in_world_; }
+  // Empty before rooms are sought.
+  const FoundStructure& structure() const { return *structure_; }
   std::uint64_t version() const { return version_; }
 
   // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
@@ -39,6 +42,9 @@ class Map {
 
   // The patch behind an observation, whether its keyframe lives or is retired; nullptr if there is none.
   const SurfacePatch* patch(const PlaneObservation& observation) const;
+
+  // Mean of the middles of the plane's patches, world; its anchor if there are none. Linear in the observations.
+  Eigen::Vector3d observed_centre(const MappedPlane& plane) const;
 
   // Keyframes that share at least `min_shared` landmarks with `id`, most shared first (ties: lower id first).
   // Cost: one visit per observation of the keyframe's landmarks.
@@ -74,6 +80,10 @@ class Map {
   void apply_one(const ClassifyPlane& op);
   void apply_one(const PairFaces& op);
   void apply_one(const SetUp& op);
+  void apply_one(const SetStructure& op);
+  void apply_one(const MoveStructureNodes& op);
+  // Rooms and floors that used a plane use what it was merged into, or do without it.
+  void relink_structure(PlaneId gone, PlaneId into);
   void detach(LandmarkId landmark, const Observation& observation);
 
   Keyframes keyframes_;
@@ -81,6 +91,7 @@ class Map {
   Planes planes_;
   Table<KeyframeId, RetiredKeyframe, 32, false> retired_;
   std::optional<Eigen::Vector3d> up_in_world_;
+  std::shared_ptr<const FoundStructure> structure_ = std::make_shared<const FoundStructure>();
   std::uint64_t version_ = 0;
 };
 

@@ -22,6 +22,19 @@ const SurfacePatch* Map::patch(const PlaneObservation& observation) const {
                                                                   : nullptr;
 }
 
+Eigen::Vector3d Map::observed_centre(const MappedPlane& plane) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (const PlaneObservation& observation : plane.observations) {
+    const SurfacePatch* seen = patch(observation);
+    const auto pose = resolve({observation.keyframe, Se3{}});
+    if (!seen || !pose) continue;
+    sum += *pose * seen->plane.anchor;
+    ++count;
+  }
+  return count > 0 ? Eigen::Vector3d(sum / count) : plane.plane.anchor;
+}
+
 void Map::apply_one(const SetPatches& op) {
   Keyframe* keyframe = keyframes_.edit(op.id);
   if (!keyframe) return;
@@ -41,6 +54,7 @@ void Map::apply_one(const AddPlane& op) { planes_.insert_at(op.id, op.plane); }
 
 void Map::apply_one(const RemovePlane& op) {
   apply_one(PairFaces{op.id, {}, 0});
+  relink_structure(op.id, {});
   planes_.erase(op.id);
 }
 
@@ -50,6 +64,7 @@ void Map::apply_one(const MergePlane& op) {
   const MappedPlane merged = *from;
   apply_one(PairFaces{op.id, {}, 0});
   planes_.erase(op.id, op.into);
+  relink_structure(op.id, op.into);
   for (const PlaneObservation& observation : merged.observations) {
     apply_one(AddPlaneObservation{op.into, observation});
   }
@@ -105,6 +120,49 @@ void Map::apply_one(const PairFaces& op) {
     plane->other_face = other;
     plane->thickness_m = op.thickness_m;
   }
+}
+
+namespace {
+
+bool uses(const FoundStructure& structure, PlaneId id) {
+  const auto has = [id](const std::vector<PlaneId>& ids) {
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  };
+  return std::any_of(structure.rooms.begin(), structure.rooms.end(),
+                     [&](const FoundRoom& r) { return has(r.walls) || r.ground == id || r.ceiling == id; }) ||
+         std::any_of(structure.floors.begin(), structure.floors.end(),
+                     [&](const FoundFloor& f) { return has(f.grounds); });
+}
+
+void relink(std::vector<PlaneId>& ids, PlaneId gone, PlaneId into) {
+  std::replace(ids.begin(), ids.end(), gone, into);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  ids.erase(std::remove(ids.begin(), ids.end(), PlaneId{}), ids.end());
+}
+
+}  // namespace
+
+void Map::relink_structure(PlaneId gone, PlaneId into) {
+  if (!uses(*structure_, gone)) return;
+  FoundStructure changed = *structure_;
+  for (FoundRoom& room : changed.rooms) {
+    relink(room.walls, gone, into);
+    if (room.ground == gone) room.ground = into;
+    if (room.ceiling == gone) room.ceiling = into;
+  }
+  for (FoundFloor& floor : changed.floors) relink(floor.grounds, gone, into);
+  structure_ = std::make_shared<const FoundStructure>(std::move(changed));
+}
+
+void Map::apply_one(const SetStructure& op) { structure_ = op.structure; }
+
+void Map::apply_one(const MoveStructureNodes& op) {
+  if (op.rooms.size() != structure_->room_nodes.size() || op.floors.size() != structure_->floor_nodes.size()) return;
+  FoundStructure changed = *structure_;
+  changed.room_nodes = op.rooms;
+  changed.floor_nodes = op.floors;
+  structure_ = std::make_shared<const FoundStructure>(std::move(changed));
 }
 
 void Map::apply_one(const SetUp& op) { up_in_world_ = op.up_in_world.normalized(); }

@@ -9,7 +9,7 @@
 
 #include "core/base/options.h"
 #include "core/scene/clusters.h"
-#include "core/scene/found_structure.h"
+#include "core/map/structure.h"
 #include "core/scene/free_space.h"
 #include "core/scene/rooms.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/options.h"
-#include "core/scene/found_structure.h"
+#include "core/map/structure.h"
 
 namespace vsgraphs {
 

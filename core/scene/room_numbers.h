@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/scene/found_structure.h"
+#include "core/map/structure.h"
 
 namespace vsgraphs {
 

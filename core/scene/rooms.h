@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/options.h"
-#include "core/scene/found_structure.h"
+#include "core/map/structure.h"
 #include "core/scene/room_outline.h"
 
 namespace vsgraphs {

@@ -8,7 +8,7 @@
 #include "core/scene/clusters.h"
 #include "core/scene/doors.h"
 #include "core/scene/floors.h"
-#include "core/scene/found_structure.h"
+#include "core/map/structure.h"
 #include "core/scene/free_space.h"
 #include "core/scene/level_map.h"
 #include "core/scene/openings.h"
@@ -28,14 +28,6 @@ struct StructureOptions {
   DoorOptions door;
   FloorOptions floor;
   PlaceOptions place;
-};
-
-struct FoundStructure {
-  std::vector<FoundRoom> rooms;  // by storey, ascending
-  std::vector<FoundDoor> doors;
-  std::vector<FoundFloor> floors;
-  std::vector<Place> places;
-  RoomNumber next_number = 0;  // the first number never given to a room
 };
 
 // One pass over everything known, all in one levelled frame. `previous`: what the last pass found (its rooms keep their

@@ -7,6 +7,7 @@
 
 #include "core/solve/factors/relative_pose.h"
 #include "core/solve/window_planes.h"
+#include "core/solve/window_structure.h"
 
 namespace vsgraphs {
 
@@ -125,8 +126,9 @@ void build_tracked_links(const Map& map, const Window&, const MeasurementModel&,
 }
 
 using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
-constexpr std::array<FactorBuilder, 4> factor_builders = {
-    build_landmark_factors, build_tracked_links, build_plane_factors, build_wall_to_ground_factors};
+constexpr std::array<FactorBuilder, 5> factor_builders = {
+    build_landmark_factors, build_tracked_links, build_plane_factors, build_wall_to_ground_factors,
+    build_room_factors};
 
 }  // namespace
 
@@ -163,6 +165,22 @@ WindowProblem build_problem(const Map& map, const Window& window, const Measurem
   return problem;
 }
 
+namespace {
+
+void move_nodes(const WindowProblem& problem, Draft& draft) {
+  if (problem.room_of_centroid.empty()) return;
+  const FoundStructure& structure = draft.map().structure();
+  MoveStructureNodes moved{structure.room_nodes, structure.floor_nodes};
+  const auto& centroids = problem.bundle.structures.centroids;
+  for (std::size_t i = 0; i < problem.room_of_centroid.size(); ++i)
+    moved.rooms[static_cast<std::size_t>(problem.room_of_centroid[i])] = centroids[i];
+  for (const auto& [centroid, floor] : problem.floor_of_centroid)
+    moved.floors[static_cast<std::size_t>(floor)] = centroids[static_cast<std::size_t>(centroid)];
+  draft.record(std::move(moved));
+}
+
+}  // namespace
+
 void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report,
                     Draft& draft) {
   const BundleProblem& bundle = problem.bundle;
@@ -191,6 +209,7 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
   for (std::size_t i = 0; i < problem.plane_of_variable.size(); ++i) {
     draft.record(MovePlane{problem.plane_of_variable[i], bundle.structures.planes[i]});
   }
+  move_nodes(problem, draft);
 }
 
 }  // namespace vsgraphs

@@ -35,9 +35,11 @@ struct WindowProblem {
   std::vector<KeyframeId> keyframe_of_pose;
   std::vector<LandmarkId> landmark_of_point;
   std::vector<PlaneId> plane_of_variable;
+  std::vector<int> room_of_centroid;                     // index into the map's rooms; these centroids come first
+  std::vector<std::pair<int, int>> floor_of_centroid;  // (centroid, index into the map's floors)
 };
 
-// Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground.
+// Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground, rooms and floors.
 WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);
 
 // Records the solution in `draft`: moved poses, landmarks, passengers and planes, and removes the observations that

@@ -35,8 +35,8 @@ class PlaneGathering {
   PlaneGathering(const Map& map, const WindowProblem& problem)
       : map_(map), problem_(problem), pose_of_(pose_positions(map, problem)) {}
 
-  // Sorts a plane's observations; false if no free pose sees it.
-  bool gather(const MappedPlane& plane) {
+  // Sorts a plane's observations; false if no free pose sees it, unless it is `wanted` all the same.
+  bool gather(const MappedPlane& plane, bool wanted) {
     inside_.clear();
     outside_.clear();
     bool free = false;
@@ -55,12 +55,13 @@ class PlaneGathering {
         outside_.push_back({(fixed ? seen : seen.inflated(outer_pose_error)).transformed(placed)});
       }
     }
-    return free && inside_.size() + outside_.size() >= 2;
+    return (free || wanted) && inside_.size() + outside_.size() >= 2;
   }
   const std::vector<SeenByPose>& inside() const { return inside_; }
   const std::vector<WeightedPlane>& outside() const { return outside_; }
   // Among the patches the window sees, so that turning the plane there moves it little.
   Eigen::Vector3d anchor(const MappedPlane& plane) const {
+    if (inside_.empty()) return plane.plane.project(plane.plane.anchor);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const SeenByPose& s : inside_)
       sum += problem_.bundle.poses[static_cast<std::size_t>(s.pose)] * s.seen.plane.anchor;
@@ -77,10 +78,31 @@ class PlaneGathering {
 
 }  // namespace
 
+namespace {
+
+// Walls and ground of the rooms that have a wall in the window: tied to it, they come along with what is known of them.
+std::vector<PlaneId> planes_of_rooms_in_window(const Map& map, PlaneGathering& gathering) {
+  std::vector<PlaneId> planes;
+  for (const FoundRoom& room : map.structure().rooms) {
+    const bool seen = std::any_of(room.walls.begin(), room.walls.end(), [&](PlaneId id) {
+      const MappedPlane* wall = map.planes().find(id);
+      return wall && gathering.gather(*wall, false);
+    });
+    if (!seen) continue;
+    planes.insert(planes.end(), room.walls.begin(), room.walls.end());
+    if (room.ground.valid()) planes.push_back(room.ground);
+  }
+  std::sort(planes.begin(), planes.end());
+  return planes;
+}
+
+}  // namespace
+
 void build_plane_factors(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
   PlaneGathering gathering(map, problem);
+  const std::vector<PlaneId> wanted = planes_of_rooms_in_window(map, gathering);
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
-    if (!gathering.gather(plane)) return;
+    if (!gathering.gather(plane, std::binary_search(wanted.begin(), wanted.end(), id))) return;
     const int index = static_cast<int>(problem.bundle.structures.planes.size());
     const AnchoredPlane start = plane.plane.anchored_at(gathering.anchor(plane));
     problem.bundle.structures.planes.push_back(start);

@@ -136,6 +136,16 @@ void Config::visit(Visitor&& visitor) {
   describe_group("scene.extraction", scene.extraction, visitor);
   describe_group("scene.association", scene.association, visitor);
   describe_group("scene.role", scene.role, visitor);
+  describe_group("structure", structure, visitor);
+  describe_group("structure.free_space", structure.free_space, visitor);
+  describe_group("structure.level", structure.structure.level, visitor);
+  describe_group("structure.opening", structure.structure.opening, visitor);
+  describe_group("structure.cluster", structure.structure.cluster, visitor);
+  describe_group("structure.outline", structure.structure.outline, visitor);
+  describe_group("structure.room", structure.structure.room, visitor);
+  describe_group("structure.door", structure.structure.door, visitor);
+  describe_group("structure.floor", structure.structure.floor, visitor);
+  describe_group("structure.place", structure.structure.place, visitor);
 }
 
 void Config::set(const std::string& key, const OptionValue& value) {

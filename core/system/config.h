@@ -9,17 +9,19 @@
 
 #include "core/stages/local_mapper.h"
 #include "core/stages/scene_builder.h"
+#include "core/stages/structure_builder.h"
 #include "core/stages/tracker.h"
 #include "core/vision/orb_extractor.h"
 
 namespace vsgraphs {
 
 struct SystemOptions {
-  std::string mode = "bc";
+  std::string mode = "full";
   std::string execution = "threaded";
   int seed = 0;
   bool realtime = false;
   bool builds_scene() const { return mode != "slam"; }
+  bool builds_structure() const { return mode == "full"; }
   int max_waiting_keyframes = 2;
   std::string schedule_out;
   std::string replay;
@@ -27,8 +29,9 @@ struct SystemOptions {
 
 template <typename Visitor>
 void describe(SystemOptions& o, Visitor& field) {
-  field("mode", o.mode, AllowedValues{"slam", "bc"},
-        "what is estimated: slam (trajectory and landmarks), bc (and building components: walls, ground)");
+  field("mode", o.mode, AllowedValues{"slam", "bc", "full"},
+        "what is estimated: slam (trajectory and landmarks), bc (and building components: walls, ground), full (and "
+        "structural elements: rooms, floors)");
   field("execution", o.execution, AllowedValues{"threaded", "serial"},
         "threaded: mapping beside tracking; serial: one after the other, the same bytes on every run");
   field("seed", o.seed, 0, 2147483647, "start of all random numbers");
@@ -57,6 +60,7 @@ class Config {
   TrackerOptions tracker;
   LocalMapperOptions mapper;
   SceneBuilderOptions scene;
+  StructureBuilderOptions structure;
 
   // Throws InputError: unknown key (names the nearest), wrong type, out of range (names the range).
   void set(const std::string& key, const OptionValue& value);

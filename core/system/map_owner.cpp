@@ -28,6 +28,7 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
     : snapshot_(map_.snapshot()),
       mapper_(config.mapper, camera, config.orb.pyramid()),
       scene_(config.scene, camera),
+      structure_(config.structure),
       cell_(cell),
       spans_("local mapping"),
       scene_spans_("scene understanding") {
@@ -38,6 +39,7 @@ void MapOwner::insert(const KeyframeRequest& request) {
   spans_.set_frame(request.frame_index);
   const MapEdit edit = mapper_.insert(request, snapshot_, newest_, &spans_);
   newest_frame_ = request.frame_index;
+  newest_s_ = request.timestamp_s;
   ++inserted_;
   apply(edit, {EditEvent::Kind::insert, request.frame_index, 0, 0});
 }
@@ -64,6 +66,15 @@ bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
   }();
   apply(edit, {EditEvent::Kind::labels, frame_index, 0, 0});
   return true;
+}
+
+void MapOwner::find_rooms(bool last) {
+  scene_spans_.set_frame(newest_frame_);
+  const MapEdit edit = [&] {
+    const Span span(&scene_spans_, "find_structure");
+    return structure_.propose(snapshot_, newest_s_, last, &scene_spans_);
+  }();
+  apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
 }
 
 void MapOwner::refine(const std::function<bool()>& stop) {

@@ -8,6 +8,7 @@
 
 #include "core/stages/local_mapper.h"
 #include "core/stages/scene_builder.h"
+#include "core/stages/structure_builder.h"
 #include "core/system/config.h"
 #include "core/system/schedule.h"
 #include "core/system/span_recorder.h"
@@ -43,6 +44,9 @@ class MapOwner {
   // sought again; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
   void insert(const KeyframeRequest& request);
   void find_planes();
+  // Whether it is time to seek rooms again; `last`: at the end of the run.
+  bool rooms_due() const { return structure_.due(newest_s_); }
+  void find_rooms(bool last);
   // False, and nothing done, if the frame is no keyframe (any more).
   bool label(std::int64_t frame_index, const LabelGrid& labels);
   void refine(const std::function<bool()>& stop);
@@ -59,10 +63,12 @@ class MapOwner {
   Snapshot snapshot_;
   LocalMapper mapper_;
   SceneBuilder scene_;
+  StructureBuilder structure_;
   SnapshotCell& cell_;
   SpanRecorder spans_, scene_spans_;
   KeyframeId newest_;
   std::int64_t newest_frame_ = 0;
+  double newest_s_ = 0;
   std::int64_t inserted_ = 0;
   std::vector<EditEvent> edits_;
 };

@@ -75,6 +75,10 @@ class ReplayingExecutor : public Executor {
         require_run(owner_.label(event.frame, *labels->second), departed(event));
         break;
       }
+      case EditEvent::Kind::rooms:
+      case EditEvent::Kind::rooms_last:
+        owner_.find_rooms(event.kind == EditEvent::Kind::rooms_last);
+        break;
       case EditEvent::Kind::refine: {
         int left = event.iterations;
         owner_.refine([&left] { return left-- <= 0; });

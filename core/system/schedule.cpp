@@ -15,10 +15,12 @@ namespace vsgraphs {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, EditEvent::Kind>, 4> kinds = {{
+constexpr std::array<std::pair<const char*, EditEvent::Kind>, 6> kinds = {{
     {"insert", EditEvent::Kind::insert},
     {"planes", EditEvent::Kind::planes},
     {"labels", EditEvent::Kind::labels},
+    {"rooms", EditEvent::Kind::rooms},
+    {"rooms_last", EditEvent::Kind::rooms_last},
     {"refine", EditEvent::Kind::refine},
 }};
 

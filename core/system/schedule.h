@@ -4,6 +4,8 @@
 //   insert FRAME HASH                 the frame became a keyframe; hash of the edit
 //   planes FRAME HASH                 its planes were sought
 //   labels FRAME HASH                 a segmentation of its image arrived
+//   rooms FRAME HASH                  rooms, floors and doors were sought
+//   rooms_last FRAME HASH             the same at the end of the run
 //   refine FRAME ITERATIONS HASH      its window was adjusted with that many iterations
 #pragma once
 
@@ -20,7 +22,7 @@ struct FrameEvent {
 };
 
 struct EditEvent {
-  enum class Kind { insert, planes, labels, refine };
+  enum class Kind { insert, planes, labels, rooms, rooms_last, refine };
   Kind kind = Kind::insert;
   std::int64_t frame = 0;
   int iterations = 0;  // of refine

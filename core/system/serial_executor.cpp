@@ -9,28 +9,33 @@ namespace {
 class SerialExecutor : public Executor {
  public:
   SerialExecutor(const Config& config, const Camera& camera)
-      : builds_scene_(config.system.builds_scene()), tracking_(config, camera), owner_(config, camera, cell_) {}
+      : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     TrackedFrame result = tracking_.track(frame, cell_.take());
     if (result.keyframe_request) {
       owner_.insert(*result.keyframe_request);
-      if (builds_scene_) owner_.find_planes();
+      if (options_.builds_scene()) owner_.find_planes();
+      if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);
       owner_.refine([] { return false; });
     }
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
-    if (builds_scene_) owner_.label(frame_index, *labels);
+    if (options_.builds_scene()) owner_.label(frame_index, *labels);
   }
-  void finish() override {}
+  void finish() override {
+    if (options_.builds_structure() && tracking_.requested() > 0 && !finished_) owner_.find_rooms(true);
+    finished_ = true;
+  }
   Snapshot snapshot() const override { return cell_.take().snapshot; }
   std::int64_t backlog() const override { return 0; }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
 
  private:
-  bool builds_scene_;
+  SystemOptions options_;
+  bool finished_ = false;
   SnapshotCell cell_;
   TrackingLane tracking_;
   MapOwner owner_;

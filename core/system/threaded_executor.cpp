@@ -74,8 +74,10 @@ class ThreadedExecutor : public Executor {
         }
         owner_.insert(*work->request);
         if (options_.builds_scene()) owner_.find_planes();
+        if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);
         owner_.refine([this] { return requests_.size() >= 2; });
       }
+      if (options_.builds_structure() && owner_.version() > 0) owner_.find_rooms(true);
     } catch (const std::exception& error) {
       // Whatever it was, it was not the frame the tracker is at: it must not look like bad input of that frame.
       failure_ = std::make_exception_ptr(std::runtime_error(std::string("mapping failed: ") + error.what()));

@@ -1,5 +1,6 @@
-// What recognition of structural elements finds: rooms, doors, floors and places to be. Plain values, in the levelled
-// frame (z up, metres).
+// Structural elements: rooms, doors, floors and places to be. Plain values in a levelled frame (z up, metres), found anew
+// every few seconds from free space and planes; between two passes rooms' and floors' nodes are variables of the factor
+// graph.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/polygon.h"
+#include "core/geometry/se3.h"
 #include "core/map/ids.h"
 
 namespace vsgraphs {
@@ -57,6 +59,19 @@ struct Place {
   double clearance_m = 0;
   RoomNumber room = no_room;              // no_room: in a doorway or outside all rooms
   std::vector<std::uint32_t> neighbours;  // indices, ascending
+};
+
+struct FoundStructure {
+  bool sought = false;           // false: nobody has looked for rooms yet
+  std::vector<FoundRoom> rooms;  // by storey, ascending
+  std::vector<FoundDoor> doors;
+  std::vector<FoundFloor> floors;
+  std::vector<Place> places;
+  RoomNumber next_number = 0;  // the first number never given to a room
+  Se3 level_from_world;
+  // Where the vertices of the factor graph stand, world: of each room, of each floor. A room's is the mean of its walls'
+  // centroids (the paper's room centroid), which furniture may pull off the middle of its polygon.
+  std::vector<Eigen::Vector3d> room_nodes, floor_nodes;
 };
 
 }  // namespace vsgraphs
