@@ -28,7 +28,7 @@ std::optional<FramePose> Recovery::from_recent(const Map& map, const FeatureSet&
 
 std::vector<KeyframeId> Recovery::likely_places(const Map& map, const FeatureSet& now) const {
   std::vector<KeyframeId> keyframes;
-  std::vector<Place> places;
+  std::vector<KnownPlace> places;
   map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
     places.push_back({static_cast<int>(keyframes.size()), keyframe.features.get()});
     keyframes.push_back(id);

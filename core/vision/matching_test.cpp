@@ -221,7 +221,7 @@ TEST(PlaceCandidates, RanksTheSamePlaceFirst) {
   std::vector<Descriptor> strange;
   for (int i = 0; i < 100; ++i) strange.push_back(random_descriptor(rng));
   const FeatureSet stranger(s.a.features(), strange, 640, 480);
-  const std::vector<Place> places{{11, &stranger}, {12, &s.b}, {13, &elsewhere.a}};
+  const std::vector<KnownPlace> places{{11, &stranger}, {12, &s.b}, {13, &elsewhere.a}};
   const std::vector<PlaceCandidate> found = find_place_candidates(s.a, places, {});
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].id, 12);

@@ -17,7 +17,7 @@ std::vector<int> strongest(const FeatureSet& set, int count) {
 
 }  // namespace
 
-std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::span<const Place> places,
+std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::span<const KnownPlace> places,
                                                   const PlaceOptions& options) {
   require_input(options.strongest > 0 && options.max_candidates >= 0,
                 "place candidates: strongest must be positive and max_candidates not negative");
@@ -25,7 +25,7 @@ std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::
   const std::vector<int> of_query = strongest(query, options.strongest);
   if (of_query.empty()) return candidates;
   const MatchOptions matching{.max_distance = options.max_distance, .ratio = 0.9, .check_rotation = true};
-  for (const Place& place : places) {
+  for (const KnownPlace& place : places) {
     VSG_INVARIANT(place.features != nullptr);
     const std::vector<int> of_place = strongest(*place.features, options.strongest);
     const std::size_t found = match_descriptors(query, of_query, *place.features, of_place, matching).size();

@@ -8,7 +8,7 @@
 
 namespace vsgraphs {
 
-struct Place {
+struct KnownPlace {
   int id = 0;                            // the caller's name for it
   const FeatureSet* features = nullptr;  // not owned
 };
@@ -26,7 +26,7 @@ struct PlaceOptions {
 };
 
 // The most similar places, best first (ties: as given). About 40 us per place.
-std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::span<const Place> places,
+std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::span<const KnownPlace> places,
                                                   const PlaceOptions& options);
 
 }  // namespace vsgraphs
