@@ -12,7 +12,7 @@ from ablation_statistics import Gains, Row, gains, medians, names, of
 # from a true surface.
 COLUMNS = {
     "ate_rmse_m": ("ATE m", 4),
-    "completion": ("completion", 3),
+    "completion": ("lowest completion", 3),
     "map_points": ("points", 0),
     "map_rmse_m": ("map RMSE m", 3),
     "map_near_rmse_m": ("near m", 3),

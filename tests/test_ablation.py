@@ -85,11 +85,16 @@ def test_figures_table() -> None:
     rows = [row("hall", "slam", 0.1), row("hall", "bc", 0.2)]
     rows[1]["figures"] |= {"recall": 0.5, "cpu_s_per_1000": 8.126}
     assert tables.figures_table(rows).splitlines() == [
-        "| sequence | variant | runs | ATE m | completion | recall | CPU ms / frame |",
+        "| sequence | variant | runs | ATE m | lowest completion | recall | CPU ms / frame |",
         "|---|---|---:|---:|---:|---:|---:|",
         "| hall | slam | 1 | 0.1000 | 1.000 | - | - |",
         "| hall | bc | 1 | 0.2000 | 1.000 | 0.50 | 8.13 |",
     ]
+
+
+def test_a_lost_run_shows_among_good_ones() -> None:
+    runs = [{"completion": share} for share in (1.0, 0.4, 1.0)]
+    assert statistics.medians(runs, ["completion", "ate_rmse_m"]) == {"completion": 0.4}
 
 
 def test_gains_table_and_summary() -> None:
