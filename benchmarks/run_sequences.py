@@ -50,11 +50,11 @@ class Case:
 def run_once(program: list[str], case: Case, seed: int, extra: list[str], out: Path) -> dict[str, Any]:
     """One `vsgraphs run` and `vsgraphs eval`: {"figures", "stages", "run", "eval"}. Raises RuntimeError."""
     command = [*program, "run", str(case.sequence), "--out", str(out), "--seed", str(seed), *MODES[case.mode]]
-    _call([*command, *extra])
+    call([*command, *extra])
     run = json.loads((out / "run.json").read_text())
     evaluation: dict[str, Any] = {}
     if any(next(case.sequence.glob(pattern), None) for pattern in TRUTH):
-        _call(
+        call(
             [
                 *program,
                 "eval",
@@ -69,11 +69,13 @@ def run_once(program: list[str], case: Case, seed: int, extra: list[str], out: P
     return {"figures": figures(run, evaluation), "stages": run["stages"], "run": run, "eval": evaluation}
 
 
-def _call(command: list[str]) -> None:
+def call(command: list[str]) -> str:
+    """Runs a program to its end and returns what it printed. Raises RuntimeError with its last error line."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         last = done.stderr.strip().splitlines()[-1:] or ["no message"]
         raise RuntimeError(f"{' '.join(command)}\n  {last[0]}")
+    return done.stdout
 
 
 def arguments() -> argparse.Namespace:

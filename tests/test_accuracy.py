@@ -46,6 +46,27 @@ def test_recorded_sequences(
 
 
 @pytest.mark.data
+@pytest.mark.parametrize(("name", "limit_m"), [("rendered_room", 0.012), ("tum_fr1_xyz_first230", 0.0125)])
+def test_building_components(
+    name: str, limit_m: float, shared_data: Path, tmp_path: Path, vsgraphs: Program
+) -> None:
+    """Walls and ground in the joint problem: the trajectory stays accurate, and the walls are right."""
+    folder, out, figures = shared_data / name, tmp_path / "out", tmp_path / "scene.json"
+    done = vsgraphs("run", folder, "--out", out, "--mode", "bc", "--execution", "serial")
+    assert done.returncode == 0, done.stderr
+    assert report(out)["completion"] == 1.0
+    assert evaluated(vsgraphs, out, folder / "groundtruth.txt")["ate"]["rmse_m"] <= limit_m
+    if name == "rendered_room":  # the truth of its walls is known
+        done = vsgraphs("eval", "--scene", out, "--truth", folder / "scene_gt.json", "--json", figures)
+        assert done.returncode == 0, done.stderr
+        walls = json.loads(figures.read_text())["building_components"]["walls"]
+        assert walls["recall"] == 1.0
+        assert walls["precision"] >= 0.8
+        assert walls["angle_deg"] < 1.0
+        assert walls["offset_m"] < 0.02
+
+
+@pytest.mark.data
 def test_serial_runs_are_the_same_bytes(shared_data: Path, tmp_path: Path, vsgraphs: Program) -> None:
     for out in ("a", "b"):
         options = ("--execution", "serial", "--max-frames", "300")
