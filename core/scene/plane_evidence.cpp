@@ -8,6 +8,7 @@ namespace vsgraphs {
 namespace {
 
 constexpr double min_behind_m = 0.08, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0;
+constexpr float min_agreement = 0.9F;  // cosine of 26 deg between a reading's normal and the plane's
 
 void count(std::uint16_t& counter) {
   if (counter < std::numeric_limits<std::uint16_t>::max()) ++counter;
@@ -28,16 +29,21 @@ void PlaneEvidence::count_on(Cell c) {
 void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
                               const DepthNoise& noise) {
   const double from_camera = plane.signed_distance(world_from_camera.translation());
-  if (from_camera < 0.1 || from_camera > max_range_m) return;  // seen from behind, from within, or out of reach
+  if (from_camera < 0.1 || from_camera > max_range_m)
+    return;  // seen from behind, from within, or out of reach
   const Eigen::Vector3d normal = world_from_camera.rotation().transpose() * plane.normal;
+  const Eigen::Vector3f facing = normal.cast<float>();
   std::vector<Cell> passed;
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = r % 2; c < grid.columns; c += 2) {
-      const Eigen::Vector3d point = grid.at(c, r).point.cast<double>();
+      const SurfaceSample& sample = grid.at(c, r);
+      const Eigen::Vector3d point = sample.point.cast<double>();
       if (point.z() <= 0 || point.z() > max_range_m) continue;
       const double distance = from_camera + normal.dot(point);
       const double sigma = noise.sigma_m(point.z());
-      const bool on = std::abs(distance) < std::max(0.03, on_sigmas * sigma);
+      // A ceiling or floor that the plane runs into lies on it too, along a line: only what faces the same way counts.
+      const bool on =
+          std::abs(distance) < std::max(0.03, on_sigmas * sigma) && sample.normal.dot(facing) > min_agreement;
       const bool behind = distance < -std::max(min_behind_m, behind_sigmas * sigma);
       if (!on && !behind) continue;
       const Eigen::Vector3d meets = world_from_camera * (point * (from_camera / (from_camera - distance)));
