@@ -37,7 +37,7 @@ class OutlineProblem {
                                   high_ + Eigen::Vector2d::Constant(margin_m), lines);
     RoomOutline outline;
     outline.edges = arrangement.outline(choose_faces(arrangement));
-    describe(lines, outline);
+    measure(outline);
     return outline;
   }
 
@@ -200,7 +200,19 @@ class OutlineProblem {
     });
   }
 
-  void describe(const std::vector<PlanLine>&, RoomOutline& outline) const {
+  // Is something solid between a piece of the outline and the room's free space?
+  bool solid(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    const Eigen::Vector2d way = (b - a).normalized(), inward(-way.y(), way.x());
+    for (double d = -1.5 * map_.frame.cell_m; d <= options_.proximity_m; d += 0.5 * map_.frame.cell_m) {
+      const int index = map_.frame.index_at(0.5 * (a + b) + d * inward);
+      if (index < 0) continue;
+      if (map_.cells[static_cast<std::size_t>(index)] == CellState::blocked) return true;
+      if (label(index) == cluster_ && d > 1.5 * map_.frame.cell_m) return false;
+    }
+    return false;
+  }
+
+  void measure(RoomOutline& outline) const {
     std::vector<double> bounding(walls_.size(), 0);
     for (const OutlineEdge& edge : outline.edges) {
       const double length = (edge.to - edge.from).norm();
@@ -209,7 +221,9 @@ class OutlineProblem {
       for (int i = 0; i < pieces; ++i) {
         const Eigen::Vector2d a = edge.from + (edge.to - edge.from) * i / pieces,
                               b = edge.from + (edge.to - edge.from) * (i + 1) / pieces;
-        if (closed(a, b)) outline.closed_m += length / pieces;
+        const bool seen = closed(a, b);
+        if (seen) outline.closed_m += length / pieces;
+        if (seen || solid(a, b)) outline.solid_m += length / pieces;
         for (const std::size_t w : nearby_)
           if (wall_covers(walls_[w], a, b)) bounding[w] += length / pieces;
       }

@@ -37,9 +37,11 @@ void describe(OutlineOptions& o, Visitor& field) {
 }
 
 struct RoomOutline {
-  std::vector<OutlineEdge> edges;        // closed, inside to the left; empty: no outline found
-  std::vector<std::size_t> walls;        // indices of the wall lines that bound it, ascending
-  double perimeter_m = 0, closed_m = 0;  // closed: by wall that was seen, or by an opening
+  std::vector<OutlineEdge> edges;  // closed, inside to the left; empty: no outline found
+  std::vector<std::size_t> walls;  // indices of the wall lines that bound it, ascending
+  double perimeter_m = 0;
+  double closed_m = 0;  // by wall that was seen, or by an opening
+  double solid_m = 0;   // closed, or something solid stands there or before it: furniture hides walls
   Polygon2 polygon() const;
 };
 
