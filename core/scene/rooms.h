@@ -16,7 +16,7 @@ struct RoomOptions {
   int min_walls = 2;
   double min_area_m2 = 1.5;
   double min_closed_share = 0.4;
-  double min_solid_share = 0.72;
+  double min_solid_share = 0.8;
   double unvisited_closed_share = 0.7;
   double max_ground_tilt_deg = 11.5;
   double corridor_width_m = 2.4;
