@@ -9,6 +9,8 @@
 namespace vsgraphs {
 namespace {
 
+constexpr double narrow_place_m = 0.3;  // how far the narrowest place may lie from the wall it is in
+
 GridValues<char> open_cells(const LevelMap& map) {
   GridValues<char> open;
   open.reserve(map.cells.size());
@@ -75,7 +77,7 @@ void close_opening(const GridFrame& frame, const Opening& opening, GridValues<ch
 bool divides_rooms(const Narrowing& narrow, const LevelMap& map, std::span<const WallLine> walls,
                    const ClusterOptions& options, const OpeningOptions& openings) {
   if (narrow.gap.width_m < openings.min_width_m || narrow.gap.width_m > openings.max_width_m) return false;
-  const OpeningEvidence evidence = opening_evidence(narrow.gap, map, walls, openings);
+  const OpeningEvidence evidence = opening_evidence(narrow.gap, map, walls, openings, narrow_place_m);
   if (evidence.sufficient()) return true;
   // Walls that were not made out yet: the shape of the free space has to do, and wall above the gap if walls are known
   // elsewhere.

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double parallel_cosine = 0.94;  // 20 deg
 constexpr double across_cosine = 0.5;
+constexpr double own_line_m = 0.15;                             // pieces of one wall are in line this well
 constexpr double through_front_m = 0.3, through_back_m = 0.45;  // both sides of an opening are free this far
 
 CellState state_at(const LevelMap& map, const Eigen::Vector2d& point) {
@@ -26,9 +27,9 @@ bool open_through(const LevelMap& map, const WallLine& wall, double coordinate) 
 
 // Does `wall` go on in the line beyond `end`, in direction `out`?
 bool continues_in_line(const WallLine& wall, const Eigen::Vector2d& end, const Eigen::Vector2d& out,
-                       const OpeningOptions& options) {
+                       const OpeningOptions& options, double in_line_m) {
   if (std::abs(wall.along().dot(out)) < parallel_cosine) return false;
-  if (std::abs(wall.distance(end)) > options.max_thickness_m) return false;
+  if (std::abs(wall.distance(end)) > in_line_m) return false;
   const double sign = wall.along().dot(out) > 0 ? 1 : -1;
   const double t = wall.coordinate(end);
   const auto seen = [&](double near, double far) {
@@ -38,7 +39,7 @@ bool continues_in_line(const WallLine& wall, const Eigen::Vector2d& end, const E
 }
 
 bool stands_across(const WallLine& wall, const Eigen::Vector2d& end, const Eigen::Vector2d& out,
-                   const OpeningOptions& options) {
+                   const OpeningOptions& options, double) {
   if (std::abs(wall.along().dot(out)) > across_cosine) return false;
   const double beyond = -wall.distance(end) / wall.normal().dot(out);
   if (beyond < -0.15 || beyond > options.jamb_m) return false;
@@ -94,11 +95,12 @@ std::vector<Opening> openings_along(const LevelMap& map, const WallLine& wall,
   return openings;
 }
 
-// The other face's view of the same opening is worked in.
+// A piece of the same face says the same again; the other face says how thick the wall is.
 void unite(Opening& into, const Opening& other) {
+  const bool other_face = into.normal.dot(other.normal) < 0;
   const double apart = into.normal.dot(other.center - into.center);
   const double aside = into.along().dot(other.center - into.center);
-  into.thickness_m = std::max(into.thickness_m, std::abs(apart));
+  if (other_face) into.thickness_m = std::max(into.thickness_m, std::abs(apart));
   into.center += 0.5 * (apart * into.normal + aside * into.along());
   into.width_m = std::max(into.width_m, other.width_m);
 }
@@ -106,14 +108,14 @@ void unite(Opening& into, const Opening& other) {
 }  // namespace
 
 OpeningEvidence opening_evidence(const Opening& opening, const LevelMap& map, std::span<const WallLine> walls,
-                                 const OpeningOptions& options) {
+                                 const OpeningOptions& options, double in_line_m) {
   OpeningEvidence evidence;
   for (const double side : {-1.0, 1.0}) {
     const Eigen::Vector2d out = side * opening.along();
     const Eigen::Vector2d end = opening.center + 0.5 * opening.width_m * out;
     const auto any = [&](auto&& test) {
       return std::any_of(walls.begin(), walls.end(),
-                         [&](const WallLine& wall) { return test(wall, end, out, options); });
+                         [&](const WallLine& wall) { return test(wall, end, out, options, in_line_m); });
     };
     if (any(continues_in_line))
       ++evidence.in_line;
@@ -136,7 +138,7 @@ std::vector<Opening> openings_in_walls(const LevelMap& map, std::span<const Wall
   std::vector<Opening> found;
   for (const WallLine& wall : walls)
     for (const Opening& opening : openings_along(map, wall, options)) {
-      if (!opening_evidence(opening, map, walls, options).sufficient()) continue;
+      if (!opening_evidence(opening, map, walls, options, own_line_m).sufficient()) continue;
       const auto same = std::find_if(found.begin(), found.end(), [&](const Opening& known) {
         return same_opening(known, opening, options);
       });

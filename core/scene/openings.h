@@ -44,8 +44,9 @@ struct OpeningEvidence {
   bool sufficient() const { return in_line + across + lintel >= 2 && (in_line > 0 || lintel > 0); }
 };
 
+// `in_line_m`: how well the gap's line is known.
 OpeningEvidence opening_evidence(const Opening& opening, const LevelMap& map, std::span<const WallLine> walls,
-                                 const OpeningOptions& options);
+                                 const OpeningOptions& options, double in_line_m);
 
 // Openings in known walls; the two faces of a wall give one.
 std::vector<Opening> openings_in_walls(const LevelMap& map, std::span<const WallLine> walls,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/scene/min_cut.h"
 
@@ -13,8 +12,6 @@ constexpr double step_m = 0.1;           // at which walls and edges are looked 
 constexpr double seen_edge_cost = 0.02;  // per metre; not 0: of two outlines along walls the shorter one
 constexpr double free_edge_cost = 1.0;   // per metre of outline across the cluster's own free space
 constexpr double margin_m = 1.0;
-
-double area_of(const Polygon2& p) { return signed_area(p); }
 
 // Everything the prices depend on.
 class OutlineProblem {
@@ -29,97 +26,23 @@ class OutlineProblem {
         options_(options) {}
 
   RoomOutline solve() {
-    measure_cluster();
-    std::vector<PlanLine> lines = lines_of_walls();
-    add_openings(lines);
-    add_bounds(lines);
+    const std::vector<Eigen::Vector2d> cells = cells_of(cluster_, map_, clusters_);
+    low_ = high_ = cells.front();
+    for (const Eigen::Vector2d& p : cells) {
+      low_ = low_.cwiseMin(p);
+      high_ = high_.cwiseMax(p);
+    }
+    const std::vector<PlanLine> lines = outline_lines(cluster_, map_, clusters_, walls_, nearby_, options_);
     const Arrangement arrangement(low_ - Eigen::Vector2d::Constant(margin_m),
                                   high_ + Eigen::Vector2d::Constant(margin_m), lines);
     RoomOutline outline;
     outline.edges = arrangement.outline(choose_faces(arrangement));
-    describe(lines, outline);
+    measure(outline);
     return outline;
   }
 
  private:
-  void measure_cluster() {
-    for (int i = 0; i < map_.frame.size(); ++i)
-      if (label(i) == cluster_) cells_.push_back(map_.frame.center(i));
-    low_ = high_ = cells_.front();
-    for (const Eigen::Vector2d& p : cells_) {
-      low_ = low_.cwiseMin(p);
-      high_ = high_.cwiseMax(p);
-    }
-  }
-
   int label(int index) const { return index < 0 ? -1 : clusters_.labels[static_cast<std::size_t>(index)]; }
-
-  bool same_line(const PlanLine& line, const Eigen::Vector2d& normal, const Eigen::Vector2d& middle) const {
-    const double cosine = std::cos(options_.same_line_deg * std::numbers::pi / 180);
-    return std::abs(line.normal.dot(normal)) >= cosine &&
-           std::abs(line.distance(middle)) <= options_.same_line_m;
-  }
-
-  // The longest wall on a line says where it runs.
-  std::vector<PlanLine> lines_of_walls() const {
-    std::vector<std::size_t> order(nearby_.begin(), nearby_.end());
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return walls_[a].seen_m() > walls_[b].seen_m(); });
-    std::vector<PlanLine> lines;
-    for (const std::size_t w : order) {
-      const WallLine& wall = walls_[w];
-      const bool known = std::any_of(lines.begin(), lines.end(), [&](const PlanLine& line) {
-        return same_line(line, wall.normal(), wall.middle());
-      });
-      if (!known && lines.size() < Arrangement::max_lines - 8)
-        lines.push_back({wall.normal(), -wall.normal().dot(wall.middle())});
-    }
-    return lines;
-  }
-
-  // An opening whose wall was not made out closes the room all the same.
-  void add_openings(std::vector<PlanLine>& lines) const {
-    for (const ClusterOpening& o : clusters_.openings) {
-      if (o.clusters[0] != cluster_ && o.clusters[1] != cluster_) continue;
-      const double side = o.clusters[1] == cluster_ ? 1 : -1;
-      const Eigen::Vector2d threshold =
-          o.opening.center + 0.5 * side * o.opening.thickness_m * o.opening.normal;
-      add_unless_near(lines, o.opening.normal, threshold, 0.3);
-    }
-  }
-
-  void add_unless_near(std::vector<PlanLine>& lines, const Eigen::Vector2d& normal,
-                       const Eigen::Vector2d& point, double near_m) const {
-    const bool near = std::any_of(lines.begin(), lines.end(), [&](const PlanLine& line) {
-      return std::abs(line.normal.dot(normal)) > 0.9 && std::abs(line.distance(point)) <= near_m;
-    });
-    if (!near && lines.size() < Arrangement::max_lines) lines.push_back({normal, -normal.dot(point)});
-  }
-
-  // Where no wall was seen the room ends where free space does, in the direction most of its walls have.
-  void add_bounds(std::vector<PlanLine>& lines) const {
-    double cosine = 0, sine = 0;  // of four times the angle: walls square to one another agree
-    for (const std::size_t w : nearby_) {
-      const double angle = 4 * std::atan2(walls_[w].normal().y(), walls_[w].normal().x());
-      cosine += walls_[w].seen_m() * std::cos(angle);
-      sine += walls_[w].seen_m() * std::sin(angle);
-    }
-    const double turn = 0.25 * std::atan2(sine, cosine);
-    const std::size_t trimmed = cells_.size() / 100;  // a few rays stray
-    for (int k = 0; k < 4; ++k) {
-      const double angle = turn + k * std::numbers::pi / 2;
-      const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
-      std::vector<double> reach;
-      for (const Eigen::Vector2d& p : cells_) reach.push_back(outward.dot(p));
-      std::nth_element(reach.begin(), reach.end() - 1 - static_cast<std::ptrdiff_t>(trimmed), reach.end());
-      const double farthest = reach[reach.size() - 1 - trimmed] + 0.5 * map_.frame.cell_m;
-      const bool bounded = std::any_of(lines.begin(), lines.end(), [&](const PlanLine& line) {
-        return std::abs(line.normal.dot(outward)) > 0.9 &&
-               std::abs(farthest + line.offset_m * line.normal.dot(outward)) < 0.6;
-      });
-      if (!bounded && lines.size() < Arrangement::max_lines) lines.push_back({-outward, farthest});
-    }
-  }
 
   std::vector<char> choose_faces(const Arrangement& arrangement) const {
     const auto& faces = arrangement.faces();
@@ -137,7 +60,7 @@ class OutlineProblem {
     MinCut cut(static_cast<int>(faces.size()));
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
       const auto i = static_cast<std::size_t>(f);
-      const double unknown = std::max(0.0, area_of(faces[i].corners) - own[i] - others[i]);
+      const double unknown = std::max(0.0, signed_area(faces[i].corners) - own[i] - others[i]);
       cut.add_node_cost(f, others[i] + options_.unknown_cost * unknown, own[i]);
       add_edge_costs(arrangement, f, cut);
     }
@@ -200,7 +123,19 @@ class OutlineProblem {
     });
   }
 
-  void describe(const std::vector<PlanLine>&, RoomOutline& outline) const {
+  // Is something solid between a piece of the outline and the room's free space?
+  bool solid(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    const Eigen::Vector2d way = (b - a).normalized(), inward(-way.y(), way.x());
+    for (double d = -1.5 * map_.frame.cell_m; d <= options_.proximity_m; d += 0.5 * map_.frame.cell_m) {
+      const int index = map_.frame.index_at(0.5 * (a + b) + d * inward);
+      if (index < 0) continue;
+      if (map_.cells[static_cast<std::size_t>(index)] == CellState::blocked) return true;
+      if (label(index) == cluster_ && d > 1.5 * map_.frame.cell_m) return false;
+    }
+    return false;
+  }
+
+  void measure(RoomOutline& outline) const {
     std::vector<double> bounding(walls_.size(), 0);
     for (const OutlineEdge& edge : outline.edges) {
       const double length = (edge.to - edge.from).norm();
@@ -209,7 +144,9 @@ class OutlineProblem {
       for (int i = 0; i < pieces; ++i) {
         const Eigen::Vector2d a = edge.from + (edge.to - edge.from) * i / pieces,
                               b = edge.from + (edge.to - edge.from) * (i + 1) / pieces;
-        if (closed(a, b)) outline.closed_m += length / pieces;
+        const bool seen = closed(a, b);
+        if (seen) outline.closed_m += length / pieces;
+        if (seen || solid(a, b)) outline.solid_m += length / pieces;
         for (const std::size_t w : nearby_)
           if (wall_covers(walls_[w], a, b)) bounding[w] += length / pieces;
       }
@@ -224,23 +161,8 @@ class OutlineProblem {
   std::span<const WallLine> walls_;
   std::span<const std::size_t> nearby_;
   const OutlineOptions& options_;
-  std::vector<Eigen::Vector2d> cells_;
   Eigen::Vector2d low_, high_;
 };
-
-// The cluster one meets on the way from a wall into the room, -1 if another wall or nothing comes first.
-int cluster_before(const LevelMap& map, const Clusters& clusters, const WallLine& wall, double coordinate,
-                   double proximity_m) {
-  const double step = 0.5 * map.frame.cell_m;
-  for (double d = step; d <= proximity_m; d += step) {
-    const int index = map.frame.index_at(wall.point(coordinate) + d * wall.normal());
-    if (index < 0) return -1;
-    const int label = clusters.labels[static_cast<std::size_t>(index)];
-    if (label >= 0) return label;
-    if (d > 2.5 * map.frame.cell_m && map.walls[static_cast<std::size_t>(index)]) return -1;
-  }
-  return -1;
-}
 
 }  // namespace
 
@@ -248,20 +170,6 @@ Polygon2 RoomOutline::polygon() const {
   Polygon2 polygon;
   for (const OutlineEdge& edge : edges) polygon.push_back(edge.from);
   return polygon;
-}
-
-std::vector<std::size_t> walls_around(int cluster, const LevelMap& map, const Clusters& clusters,
-                                      std::span<const WallLine> walls, const OutlineOptions& options) {
-  std::vector<std::size_t> around;
-  for (std::size_t w = 0; w < walls.size(); ++w) {
-    double near_m = 0;
-    for (double t = walls[w].from_m() + 0.5 * step_m; t < walls[w].to_m() + 0.5 * step_m; t += step_m)
-      if (walls[w].seen_m(t - 0.5 * step_m, t + 0.5 * step_m, false) > 0 &&
-          cluster_before(map, clusters, walls[w], t, options.proximity_m) == cluster)
-        near_m += step_m;
-    if (near_m >= options.min_wall_m) around.push_back(w);
-  }
-  return around;
 }
 
 RoomOutline outline_room(int cluster, const LevelMap& map, const Clusters& clusters,

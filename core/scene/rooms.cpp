@@ -69,10 +69,16 @@ void add_ground_and_ceiling(const SceneFaces& faces, const RoomOptions& options,
     room.centroid.z() = ground->height_m;
   }
 
-  auto ceilings = levels_between_walls(faces.ceilings, room, faces.walls, storey_m + lowest_ceiling_m,
-                                       storey_m + highest_ceiling_m, options.max_ground_tilt_deg);
+  // Not the ceiling of a higher storey, whose own ground is seen above the same walls.
+  const double low = storey_m + lowest_ceiling_m;
+  double high = storey_m + highest_ceiling_m;
+  for (const Level& above :
+       levels_between_walls(faces.grounds, room, faces.walls, low, high, options.max_ground_tilt_deg))
+    high = std::min(high, above.height_m);
+  auto ceilings =
+      levels_between_walls(faces.ceilings, room, faces.walls, low, high, options.max_ground_tilt_deg);
   if (ceilings.empty()) return;
-  // The lowest one that is more than a patch: those of higher storeys hang above the same walls.
+  // The lowest one that is more than a patch.
   const std::size_t most = std::max_element(ceilings.begin(), ceilings.end(), fewer_points)->points;
   std::erase_if(ceilings, [&](const Level& level) { return 5 * level.points < most; });
   const auto ceiling = std::min_element(ceilings.begin(), ceilings.end(), [](const Level& a, const Level& b) {
@@ -94,7 +100,8 @@ FoundRoom room_from(const RoomOutline& outline, const Cluster& cluster, double g
   room.centroid << centroid(room.polygon), ground_m;
   room.kind = is_corridor(room.area_m2, outline.perimeter_m, options) ? RoomKind::corridor : RoomKind::room;
   room.closed_share = outline.closed_m / outline.perimeter_m;
-  room.partial = room.closed_share < options.min_closed_share;
+  room.partial = room.closed_share < options.min_closed_share ||
+                 outline.solid_m < options.min_solid_share * outline.perimeter_m;
   room.visited = cluster.visited;
   return room;
 }

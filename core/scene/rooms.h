@@ -15,7 +15,8 @@ namespace vsgraphs {
 struct RoomOptions {
   int min_walls = 2;
   double min_area_m2 = 1.5;
-  double min_closed_share = 0.55;
+  double min_closed_share = 0.4;
+  double min_solid_share = 0.8;
   double unvisited_closed_share = 0.7;
   double max_ground_tilt_deg = 11.5;
   double corridor_width_m = 2.4;
@@ -28,6 +29,8 @@ void describe(RoomOptions& o, Visitor& field) {
   field("min_area_m2", o.min_area_m2, 0.1, 20.0, "... and is at least this large");
   field("min_closed_share", o.min_closed_share, 0.0, 1.0,
         "a room is partial if less of its outline is closed by walls and openings");
+  field("min_solid_share", o.min_solid_share, 0.0, 1.0,
+        "... or if less of it has either of them or something solid standing before it");
   field("unvisited_closed_share", o.unvisited_closed_share, 0.0, 1.0,
         "what was only looked into is a room if this much of its outline is closed");
   field("max_ground_tilt_deg", o.max_ground_tilt_deg, 1.0, 30.0,

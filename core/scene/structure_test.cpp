@@ -200,7 +200,8 @@ TEST(Structure, ARoomOnlyHalfSeenSaysSo) {
   TestBuilding b;
   b.rooms = {{test::rectangle(0, 0, 12, 8)}};
   TestWalk walk(b, 8);
-  for (const double heading : {-2.6, -2.2, -1.9}) walk.look({2, 2}, 0, heading);  // into one corner
+  for (double heading = -3.0; heading < -1.5; heading += 0.2)
+    walk.look({3, 3}, 0, heading);  // into one corner
   const FoundStructure found = test::recognise(walk);
   ASSERT_EQ(found.rooms.size(), 1u);
   EXPECT_TRUE(found.rooms[0].partial);

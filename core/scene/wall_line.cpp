@@ -59,10 +59,9 @@ double WallLine::seen_m(double from, double to, bool in_band) const {
   const std::vector<char>& seen = in_band ? seen_in_band_ : seen_;
   double sum = 0;
   const int first = std::max(0, static_cast<int>(std::floor((from - from_m_) / bin_m)));
-  for (int i = first; i < static_cast<int>(seen.size()); ++i) {
+  for (int i = first; i < static_cast<int>(seen.size()) && from_m_ + i * bin_m < to; ++i) {
     const double low = std::max(from, from_m_ + i * bin_m), high = std::min(to, from_m_ + (i + 1) * bin_m);
-    if (high <= low) break;
-    if (seen[static_cast<std::size_t>(i)]) sum += high - low;
+    if (seen[static_cast<std::size_t>(i)]) sum += std::max(0.0, high - low);
   }
   return sum;
 }
