@@ -96,22 +96,43 @@ double open_outline_share(const PlaneEvidence& evidence) {
   return outline > 0 ? static_cast<double>(open) / outline : 0;
 }
 
-double width_shared_with(const PlaneEvidence& surface, const PlaneEvidence& larger) {
+namespace {
+
+// Share of the surface's columns for which `holds(column of the larger one)`.
+template <typename Holds>
+double share_of_columns(const PlaneEvidence& surface, const PlaneEvidence& larger, Holds holds) {
   const auto& cells = surface.cells();
-  int columns = 0, shared = 0;
+  int columns = 0, held = 0;
   for (int s = cells.min_s(); s < cells.end_s(); ++s) {
     const Span rows = solid_rows(surface, s);
     if (rows.empty()) continue;
     ++columns;
     const Eigen::Vector3d middle =
         surface.frame().point((s + 0.5) * cell_m, 0.5 * cell_m * (rows.low + rows.high + 1));
-    const int column = static_cast<int>(std::floor(larger.frame().coordinates(middle).x() / cell_m));
+    held += holds(static_cast<int>(std::floor(larger.frame().coordinates(middle).x() / cell_m)));
+  }
+  return columns > 0 ? static_cast<double>(held) / columns : 0;
+}
+
+}  // namespace
+
+double width_shared_with(const PlaneEvidence& surface, const PlaneEvidence& larger) {
+  constexpr int enough = 2;
+  return share_of_columns(surface, larger, [&](int column) {
     int solid = 0;
     for (int t = larger.cells().min_t(); t < larger.cells().end_t(); ++t) solid += larger.solid({column, t});
-    constexpr int enough = 2;
-    shared += solid >= enough;
+    return solid >= enough;
+  });
+}
+
+double width_within(const PlaneEvidence& surface, const PlaneEvidence& larger) {
+  Span span{larger.cells().end_s(), larger.cells().min_s() - 1};
+  for (int s = larger.cells().min_s(); s < larger.cells().end_s(); ++s) {
+    if (solid_rows(larger, s).empty()) continue;
+    span.low = std::min(span.low, s);
+    span.high = s;
   }
-  return columns > 0 ? static_cast<double>(shared) / columns : 0;
+  return share_of_columns(surface, larger, [&](int column) { return column >= span.low && column <= span.high; });
 }
 
 namespace {
@@ -120,6 +141,8 @@ SurfaceRole role_of_upright(const SurfaceFacts& facts, const PlaneEvidence& evid
                             const PlaneRoleOptions& options) {
   const UprightShape shape = shape_of(evidence);
   if (shape.area_m2 < options.min_wall_area_m2) return SurfaceRole::undecided;
+  if (shape.area_m2 < options.sure_wall_area_m2 && facts.observations <= options.min_observations)
+    return SurfaceRole::undecided;
   const double above_ground =
       up.dot(evidence.frame().origin) - facts.ground_height_m.value_or(facts.camera_height_m - 1.4);
   const double high = above_ground + shape.high_m;

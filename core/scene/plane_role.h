@@ -13,6 +13,7 @@ namespace vsgraphs {
 struct PlaneRoleOptions {
   double max_tilt_rad = 0.2;
   double min_wall_area_m2 = 0.4;
+  double sure_wall_area_m2 = 1.0;
   double min_wall_height_m = 0.8;
   double wall_top_m = 2.15;
   double open_share = 0.4;
@@ -26,6 +27,8 @@ template <typename Visitor>
 void describe(PlaneRoleOptions& o, Visitor& field) {
   field("max_tilt_rad", o.max_tilt_rad, 0.01, 0.7, "how far a wall may be from upright, ground from level");
   field("min_wall_area_m2", o.min_wall_area_m2, 0.0, 10.0, "a smaller upright surface is no wall yet");
+  field("sure_wall_area_m2", o.sure_wall_area_m2, 0.0, 10.0,
+        "a smaller one takes more than min_observations keyframes to be a wall");
   field("min_wall_height_m", o.min_wall_height_m, 0.0, 3.0,
         "a wall is seen over this height at least, unless it reaches wall_top_m");
   field("wall_top_m", o.wall_top_m, 1.0, 4.0,
@@ -63,6 +66,8 @@ struct SurfaceFacts {
 // Over how much of a surface's width a larger one beside its plane, facing the same way, is seen above or below it: then
 // the larger one is the wall, and this is a cabinet, a radiator or a curtain before it, or a pane in an opening of it.
 double width_shared_with(const PlaneEvidence& surface, const PlaneEvidence& larger);
+// Over how much of its width a surface stands before or behind the stretch from the larger one's one end to its other.
+double width_within(const PlaneEvidence& surface, const PlaneEvidence& larger);
 
 // `undecided` where too little is known.
 SurfaceRole role_by_geometry(const SurfaceFacts& facts, const PlaneEvidence& evidence,
