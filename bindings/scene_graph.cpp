@@ -131,7 +131,8 @@ nb::dict place_of(const Place& place, std::size_t i, const Se3& world_from_level
 void add_structure(const FoundStructure& structure, nb::dict& graph) {
   const Se3 world_from_level = structure.level_from_world.inverse();
   nb::list rooms, floors, doors, places;
-  for (std::size_t i = 0; i < structure.rooms.size(); ++i) rooms.append(room_of(structure, i, world_from_level));
+  for (std::size_t i = 0; i < structure.rooms.size(); ++i)
+    rooms.append(room_of(structure, i, world_from_level));
   for (std::size_t i = 0; i < structure.floors.size(); ++i)
     floors.append(floor_of(structure.floors[i], i, world_from_level));
   for (std::size_t i = 0; i < structure.doors.size(); ++i)
@@ -150,7 +151,8 @@ nb::dict scene_graph_of(const Map& map) {
   nb::dict graph;
   graph["up"] = map.up_in_world() ? vector_of(*map.up_in_world()) : nb::none();
   nb::list planes;
-  map.planes().for_each([&](PlaneId id, const MappedPlane& plane) { planes.append(plane_of(map, id, plane)); });
+  map.planes().for_each(
+      [&](PlaneId id, const MappedPlane& plane) { planes.append(plane_of(map, id, plane)); });
   graph["planes"] = planes;
   if (map.structure().sought) add_structure(map.structure(), graph);
   return graph;

@@ -219,7 +219,8 @@ void bind_slam(nb::module_& m) {
           "Says what the pixels of an earlier frame's image show; may come late and from any thread.\n\n"
           "Args:\n"
           "  frame_index: the frame's TrackResult.index. Frames that are no keyframes: no effect.\n"
-          "  roles: (h, w) uint8, values of vsgraphs.segment.SurfaceRole; any size, stretched over the image.\n"
+          "  roles: (h, w) uint8, values of vsgraphs.segment.SurfaceRole; any size, stretched over the "
+          "image.\n"
           "  confidence: (h, w) float32, 0 to 1; None: 1 everywhere.\n"
           "  instances: (h, w) uint16, pieces of one thing share a number, 0: none.\n\n"
           "Raises InputError for wrong shapes, types or values.")

@@ -27,7 +27,8 @@ struct Keyframe {
   Se3 world_from_camera;
   std::shared_ptr<const FeatureSet> features;  // never changes; shared with every snapshot
   std::shared_ptr<const DepthGrid> surface;    // likewise
-  std::shared_ptr<const KeyframeSurfaces> patches;  // planar pieces of `surface`; none before they were sought
+  std::shared_ptr<const KeyframeSurfaces>
+      patches;  // planar pieces of `surface`; none before they were sought
   std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
 };

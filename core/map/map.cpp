@@ -72,7 +72,7 @@ void Map::apply_one(const RemoveKeyframe& op) {
   const Keyframe* anchor = keyframes_.find(op.anchor);
   if (!keyframe || !anchor || op.id == op.anchor) return;
   *retired_.edit(op.id) = {op.anchor, anchor->world_from_camera.inverse() * keyframe->world_from_camera,
-                          keyframe->patches};
+                           keyframe->patches};
   const std::vector<LandmarkId> observed = keyframe->landmarks;
   for (const LandmarkId landmark : observed) {
     if (landmark.valid()) apply_one(RemoveObservation{landmark, op.id});

@@ -158,7 +158,8 @@ void Map::relink_structure(PlaneId gone, PlaneId into) {
 void Map::apply_one(const SetStructure& op) { structure_ = op.structure; }
 
 void Map::apply_one(const MoveStructureNodes& op) {
-  if (op.rooms.size() != structure_->room_nodes.size() || op.floors.size() != structure_->floor_nodes.size()) return;
+  if (op.rooms.size() != structure_->room_nodes.size() || op.floors.size() != structure_->floor_nodes.size())
+    return;
   FoundStructure changed = *structure_;
   changed.room_nodes = op.rooms;
   changed.floor_nodes = op.floors;

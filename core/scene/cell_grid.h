@@ -26,9 +26,7 @@ class CellGrid {
   int min_t() const { return min_.t; }
   int end_s() const { return min_.s + columns_; }
   int end_t() const { return min_.t + rows_; }
-  bool contains(Cell c) const {
-    return c.s >= min_.s && c.t >= min_.t && c.s < end_s() && c.t < end_t();
-  }
+  bool contains(Cell c) const { return c.s >= min_.s && c.t >= min_.t && c.s < end_s() && c.t < end_t(); }
   // A default value outside.
   Value at(Cell c) const { return contains(c) ? values_[place(c)] : Value{}; }
   // Grows to hold the cell.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/options.h"
-#include "core/scene/clusters.h"
 #include "core/map/structure.h"
+#include "core/scene/clusters.h"
 #include "core/scene/free_space.h"
 #include "core/scene/rooms.h"
 

@@ -42,11 +42,13 @@ std::optional<double> misfit(const Map& map, const MappedPlane& mapped, const Pl
   if (!offset_agrees(mapped.plane, patch.plane, options.max_offset_m)) return std::nullopt;
   if (!extents_touch(extent_of(map, mapped), patch.points, options.max_gap_m)) return std::nullopt;
   const double angle = std::acos(std::clamp(mapped.plane.normal.dot(patch.plane.normal), -1.0, 1.0));
-  return std::abs(mapped.plane.signed_distance(patch.plane.anchor)) / options.max_offset_m + angle / max_angle;
+  return std::abs(mapped.plane.signed_distance(patch.plane.anchor)) / options.max_offset_m +
+         angle / max_angle;
 }
 
 // Whether a patch may join those the plane has from the same keyframe: what one image shows as two depths is two things.
-bool coplanar_with(const std::vector<const PlacedPatch*>& taken, const PlacedPatch& patch, double max_offset_m) {
+bool coplanar_with(const std::vector<const PlacedPatch*>& taken, const PlacedPatch& patch,
+                   double max_offset_m) {
   return std::all_of(taken.begin(), taken.end(), [&](const PlacedPatch* other) {
     const double reach = (other->plane.anchor - patch.plane.anchor).norm();
     const double allowed = max_offset_m + reach * std::min(other->tilt_sigma_rad, patch.tilt_sigma_rad);
@@ -111,7 +113,8 @@ std::vector<PlaneMerge> find_merges(const Map& map, const std::vector<PlaneId>& 
     const MappedPlane* plane = map.planes().find(id);
     if (!plane) continue;
     map.planes().for_each([&](PlaneId other_id, const MappedPlane& other) {
-      if (other_id == id || is_gone(id) || is_gone(other_id) || !one_surface(map, *plane, other, options)) return;
+      if (other_id == id || is_gone(id) || is_gone(other_id) || !one_surface(map, *plane, other, options))
+        return;
       const bool keep_other = other.observations.size() != plane->observations.size()
                                   ? other.observations.size() > plane->observations.size()
                                   : other_id < id;
@@ -122,14 +125,16 @@ std::vector<PlaneMerge> find_merges(const Map& map, const std::vector<PlaneId>& 
   return merges;
 }
 
-std::optional<OtherFace> find_other_face(const Map& map, PlaneId face, const PlaneAssociationOptions& options) {
+std::optional<OtherFace> find_other_face(const Map& map, PlaneId face,
+                                         const PlaneAssociationOptions& options) {
   const MappedPlane* mine = map.planes().find(face);
   if (!mine) return std::nullopt;
   std::optional<OtherFace> best;
   const PlaneExtent extent = extent_of(map, *mine);
   map.planes().for_each([&](PlaneId id, const MappedPlane& other) {
     const AnchoredPlane turned{-other.plane.normal, other.plane.anchor, -other.plane.offset_m};
-    if (id == face || other.role != mine->role || !faces_the_same_way(mine->plane, turned, options.max_angle_rad))
+    if (id == face || other.role != mine->role ||
+        !faces_the_same_way(mine->plane, turned, options.max_angle_rad))
       return;
     // Each lies behind the other.
     const double thickness = -mine->plane.signed_distance(other.plane.anchor);

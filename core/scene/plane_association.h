@@ -32,7 +32,8 @@ void describe(PlaneAssociationOptions& o, Visitor& field) {
   field("same_view_offset_m", o.same_view_offset_m, 0.0, 0.5,
         "two patches of one keyframe farther off each other's plane than this are two surfaces");
   field("merge_angle_rad", o.merge_angle_rad, 0.005, 0.5, "between planes that are merged");
-  field("merge_offset_m", o.merge_offset_m, 0.005, 0.5, "from a plane's middle to the plane it is merged with");
+  field("merge_offset_m", o.merge_offset_m, 0.005, 0.5,
+        "from a plane's middle to the plane it is merged with");
   field("merge_gap_m", o.merge_gap_m, 0.0, 10.0, "between the extents of planes that are merged");
   field("min_thickness_m", o.min_thickness_m, 0.0, 0.5, "of a wall with two faces, at least");
   field("max_thickness_m", o.max_thickness_m, 0.05, 2.0, "of a wall with two faces, at the most");
@@ -71,6 +72,7 @@ struct OtherFace {
   PlaneId id;
   double thickness_m = 0;
 };
-std::optional<OtherFace> find_other_face(const Map& map, PlaneId face, const PlaneAssociationOptions& options);
+std::optional<OtherFace> find_other_face(const Map& map, PlaneId face,
+                                         const PlaneAssociationOptions& options);
 
 }  // namespace vsgraphs

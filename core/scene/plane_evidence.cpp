@@ -7,7 +7,8 @@
 namespace vsgraphs {
 namespace {
 
-constexpr double min_behind_m = 0.08, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0, min_facing = 0.85;
+constexpr double min_behind_m = 0.08, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0,
+                 min_facing = 0.85;
 
 void count(std::uint16_t& counter) {
   if (counter < std::numeric_limits<std::uint16_t>::max()) ++counter;
@@ -28,7 +29,8 @@ void PlaneEvidence::count_on(Cell c) {
 void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
                               const DepthNoise& noise) {
   const double from_camera = plane.signed_distance(world_from_camera.translation());
-  if (from_camera < 0.1 || from_camera > max_range_m) return;  // seen from behind, from within, or out of reach
+  if (from_camera < 0.1 || from_camera > max_range_m)
+    return;  // seen from behind, from within, or out of reach
   const Eigen::Vector3d normal = world_from_camera.rotation().transpose() * plane.normal;
   std::vector<Cell> passed;
   for (int r = 0; r < grid.rows; ++r) {

@@ -46,8 +46,8 @@ bool PlaneExtent::near(const Eigen::Vector3d& point, double reach_m) const {
 
 double PlaneExtent::share_near(const std::vector<Eigen::Vector3d>& points, double reach_m) const {
   if (points.empty()) return 0;
-  const auto count = std::count_if(points.begin(), points.end(),
-                                   [&](const Eigen::Vector3d& p) { return near(p, reach_m); });
+  const auto count =
+      std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return near(p, reach_m); });
   return static_cast<double>(count) / static_cast<double>(points.size());
 }
 

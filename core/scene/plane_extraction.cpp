@@ -17,7 +17,11 @@ class Extraction {
  public:
   Extraction(const DepthGrid& grid, const LabelGrid* labels, const Camera& camera,
              const PlaneExtractionOptions& options)
-      : grid_(grid), labels_(labels), camera_(camera), options_(options), region_(grid.samples.size(), unassigned) {
+      : grid_(grid),
+        labels_(labels),
+        camera_(camera),
+        options_(options),
+        region_(grid.samples.size(), unassigned) {
     for (std::size_t i = 0; i < region_.size(); ++i) {
       const double z = static_cast<double>(grid.samples[i].point.z());
       if (z < options.min_range_m || z > options.max_range_m) region_[i] = unusable;
@@ -110,7 +114,8 @@ std::vector<int> Extraction::grow(int seed, const AnchoredPlane& start, bool ref
       next_refit *= 2;
     }
     const int c = members[at] % grid_.columns, r = members[at] / grid_.columns;
-    for (const auto& [dc, dr] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {2, 0}, {-2, 0}, {0, 2}, {0, -2}}) {
+    for (const auto& [dc, dr] :
+         {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {2, 0}, {-2, 0}, {0, 2}, {0, -2}}) {
       if (c + dc < 0 || r + dr < 0 || c + dc >= grid_.columns || r + dr >= grid_.rows) continue;
       const auto i = static_cast<std::size_t>((r + dr) * grid_.columns + c + dc);
       if (visited[i] || !belongs(i, plane, seed_label)) continue;
@@ -121,7 +126,8 @@ std::vector<int> Extraction::grow(int seed, const AnchoredPlane& start, bool ref
   return members;
 }
 
-std::optional<PlaneFit> Extraction::fit(const std::vector<int>& members, const Eigen::Vector3d& normal) const {
+std::optional<PlaneFit> Extraction::fit(const std::vector<int>& members,
+                                        const Eigen::Vector3d& normal) const {
   PlaneSums sums;
   for (const int m : members) {
     const Eigen::Vector3d p = point(static_cast<std::size_t>(m));
@@ -167,7 +173,8 @@ SurfacePatch Extraction::condense(const std::vector<int>& members, const PlaneFi
     const auto i = static_cast<std::size_t>(m);
     const Eigen::Vector3d p = point(i);
     // What the sample's cone cuts out of the plane.
-    area += solid_angle * p.z() * p.z() * p.z() / std::max(0.05 * p.norm(), std::abs(patch.plane.normal.dot(p)));
+    area +=
+        solid_angle * p.z() * p.z() * p.z() / std::max(0.05 * p.norm(), std::abs(patch.plane.normal.dot(p)));
     const Eigen::Vector3f on_plane = patch.plane.project(p).cast<float>();
     const Eigen::Array3i voxel = (on_plane.array() / spacing).floor().cast<int>();
     if (taken.insert({voxel.x(), voxel.y(), voxel.z()}).second) patch.points.push_back(on_plane);

@@ -35,7 +35,8 @@ void describe(PlaneExtractionOptions& o, Visitor& field) {
   field("min_confidence", o.min_confidence, 0.0, 1.0, "labels less certain than this say nothing");
   field("effective_samples", o.effective_samples, 3.0, 1000.0,
         "independent readings that a patch counts for at the most: neighbouring ones err together");
-  field("point_spacing_m", o.point_spacing_m, 0.02, 1.0, "distance of the points kept to tell a patch's extent");
+  field("point_spacing_m", o.point_spacing_m, 0.02, 1.0,
+        "distance of the points kept to tell a patch's extent");
 }
 
 // `labels` may be null; otherwise of the grid's size. Deterministic. About 1 ms for an 80x60 grid.

@@ -132,13 +132,14 @@ double width_within(const PlaneEvidence& surface, const PlaneEvidence& larger) {
     span.low = std::min(span.low, s);
     span.high = s;
   }
-  return share_of_columns(surface, larger, [&](int column) { return column >= span.low && column <= span.high; });
+  return share_of_columns(surface, larger,
+                          [&](int column) { return column >= span.low && column <= span.high; });
 }
 
 namespace {
 
-SurfaceRole role_of_upright(const SurfaceFacts& facts, const PlaneEvidence& evidence, const Eigen::Vector3d& up,
-                            const PlaneRoleOptions& options) {
+SurfaceRole role_of_upright(const SurfaceFacts& facts, const PlaneEvidence& evidence,
+                            const Eigen::Vector3d& up, const PlaneRoleOptions& options) {
   const UprightShape shape = shape_of(evidence);
   if (shape.area_m2 < options.min_wall_area_m2) return SurfaceRole::undecided;
   if (shape.area_m2 < options.sure_wall_area_m2 && facts.observations <= options.min_observations)
@@ -165,8 +166,7 @@ SurfaceRole role_of_level(const SurfaceFacts& facts, const PlaneEvidence& eviden
     for (int s = evidence.cells().min_s(); s < evidence.cells().end_s(); ++s)
       area += evidence.solid({s, t}) * cell_m * cell_m;
   constexpr double storey_area_m2 = 3.0;
-  const bool raised =
-      facts.lowest_level_m && facts.height_m > *facts.lowest_level_m + options.step_height_m;
+  const bool raised = facts.lowest_level_m && facts.height_m > *facts.lowest_level_m + options.step_height_m;
   if (open_outline_share(evidence) > 0.5 * options.open_share) return SurfaceRole::other;
   if (area < options.min_ground_area_m2) return SurfaceRole::undecided;
   if (raised && area < storey_area_m2) return SurfaceRole::other;

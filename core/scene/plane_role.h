@@ -33,20 +33,24 @@ void describe(PlaneRoleOptions& o, Visitor& field) {
         "a wall is seen over this height at least, unless it reaches wall_top_m");
   field("wall_top_m", o.wall_top_m, 1.0, 4.0,
         "an upright surface whose upper edge is seen to end lower than this above the ground is no wall");
-  field("open_share", o.open_share, 0.05, 1.0, "share of an edge that rays must pass for it to count as seen");
+  field("open_share", o.open_share, 0.05, 1.0,
+        "share of an edge that rays must pass for it to count as seen");
   field("leaf_width_m", o.leaf_width_m, 0.0, 3.0,
-        "an upright surface narrower than this with an open side is no wall before it is seen to reach wall_top_m");
+        "an upright surface narrower than this with an open side is no wall before it is seen to reach "
+        "wall_top_m");
   field("min_ground_area_m2", o.min_ground_area_m2, 0.0, 10.0, "a smaller level surface is no ground yet");
-  field("step_height_m", o.step_height_m, 0.02, 1.0, "ground that lies higher than other ground is a step or a table");
-  field("min_observations", o.min_observations, 1, 20, "keyframes that must have seen a surface before it is judged");
+  field("step_height_m", o.step_height_m, 0.02, 1.0,
+        "ground that lies higher than other ground is a step or a table");
+  field("min_observations", o.min_observations, 1, 20,
+        "keyframes that must have seen a surface before it is judged");
 }
 
 // How the visible outline of an upright surface ends, and how large it is.
 struct UprightShape {
   double area_m2 = 0, width_m = 0;
-  double low_m = 0, high_m = 0;   // along t of the frame, 5 % and 95 % of the columns' ends
-  double open_top_share = 0;      // of the columns, that end in open cells above
-  double open_top_m = 0;          // where those end: their median
+  double low_m = 0, high_m = 0;          // along t of the frame, 5 % and 95 % of the columns' ends
+  double open_top_share = 0;             // of the columns, that end in open cells above
+  double open_top_m = 0;                 // where those end: their median
   double open_left = 0, open_right = 0;  // share of the side's height that is passed
 };
 UprightShape shape_of(const PlaneEvidence& evidence);
@@ -55,12 +59,12 @@ UprightShape shape_of(const PlaneEvidence& evidence);
 double open_outline_share(const PlaneEvidence& evidence);
 
 struct SurfaceFacts {
-  Eigen::Vector3d normal;      // world
-  int observations = 0;        // keyframes
-  double height_m = 0;         // of the surface's middle along `up`
+  Eigen::Vector3d normal;                 // world
+  int observations = 0;                   // keyframes
+  double height_m = 0;                    // of the surface's middle along `up`
   std::optional<double> ground_height_m;  // of the nearest ground below it, along `up`
   std::optional<double> lowest_level_m;   // of the lowest level surface known, along `up`
-  double camera_height_m = 0;  // mean of the cameras that saw it, along `up`
+  double camera_height_m = 0;             // mean of the cameras that saw it, along `up`
 };
 
 // Over how much of a surface's width a larger one beside its plane, facing the same way, is seen above or below it: then
@@ -74,6 +78,7 @@ SurfaceRole role_by_geometry(const SurfaceFacts& facts, const PlaneEvidence& evi
                              const Eigen::Vector3d& up, const PlaneRoleOptions& options);
 
 // Which roles a surface can have at all, as it stands: a level one is no wall, whatever a network says.
-bool stance_allows(SurfaceRole role, const Eigen::Vector3d& normal, const Eigen::Vector3d& up, double max_tilt_rad);
+bool stance_allows(SurfaceRole role, const Eigen::Vector3d& normal, const Eigen::Vector3d& up,
+                   double max_tilt_rad);
 
 }  // namespace vsgraphs

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "core/map/structure.h"
 #include "core/scene/clusters.h"
 #include "core/scene/doors.h"
 #include "core/scene/floors.h"
-#include "core/map/structure.h"
 #include "core/scene/free_space.h"
 #include "core/scene/level_map.h"
 #include "core/scene/openings.h"

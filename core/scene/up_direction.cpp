@@ -17,7 +17,8 @@ Stance stance(const UprightEvidence& surface, const Eigen::Vector3d& up, double 
   return Stance::neither;
 }
 
-double support(const std::vector<UprightEvidence>& surfaces, const Eigen::Vector3d& up, double tolerance_rad) {
+double support(const std::vector<UprightEvidence>& surfaces, const Eigen::Vector3d& up,
+               double tolerance_rad) {
   double area = 0;
   for (const UprightEvidence& s : surfaces) {
     if (stance(s, up, tolerance_rad) != Stance::neither) area += s.area_m2;
@@ -35,7 +36,8 @@ Eigen::Vector3d refine(const std::vector<UprightEvidence>& surfaces, const Eigen
     if (how == Stance::upright) scatter += outer;
     if (how == Stance::level) scatter += s.area_m2 * Eigen::Matrix3d::Identity() - outer;
   }
-  const Eigen::Vector3d refined = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  const Eigen::Vector3d refined =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
   return refined.dot(up) < 0 ? Eigen::Vector3d(-refined) : refined;
 }
 

@@ -126,9 +126,9 @@ void build_tracked_links(const Map& map, const Window&, const MeasurementModel&,
 }
 
 using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
-constexpr std::array<FactorBuilder, 5> factor_builders = {
-    build_landmark_factors, build_tracked_links, build_plane_factors, build_wall_to_ground_factors,
-    build_room_factors};
+constexpr std::array<FactorBuilder, 5> factor_builders = {build_landmark_factors, build_tracked_links,
+                                                          build_plane_factors, build_wall_to_ground_factors,
+                                                          build_room_factors};
 
 }  // namespace
 

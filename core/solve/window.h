@@ -35,7 +35,7 @@ struct WindowProblem {
   std::vector<KeyframeId> keyframe_of_pose;
   std::vector<LandmarkId> landmark_of_point;
   std::vector<PlaneId> plane_of_variable;
-  std::vector<int> room_of_centroid;                     // index into the map's rooms; these centroids come first
+  std::vector<int> room_of_centroid;  // index into the map's rooms; these centroids come first
   std::vector<std::pair<int, int>> floor_of_centroid;  // (centroid, index into the map's floors)
 };
 

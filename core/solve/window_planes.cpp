@@ -44,7 +44,8 @@ class PlaneGathering {
       const SurfacePatch* patch = map_.patch(o);
       const auto living = map_.reanchor({o.keyframe, Se3{}});
       if (!patch || !living) continue;
-      const PlaneEstimate seen = plane_estimate(*patch).inflated(frame_error).transformed(living->keyframe_from_camera);
+      const PlaneEstimate seen =
+          plane_estimate(*patch).inflated(frame_error).transformed(living->keyframe_from_camera);
       const int pose = pose_of_[living->keyframe.index];
       const bool fixed = pose >= 0 && problem_.bundle.pose_fixed[static_cast<std::size_t>(pose)];
       if (pose >= 0 && !fixed) {

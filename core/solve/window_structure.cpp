@@ -38,7 +38,8 @@ void hold_angles(const std::vector<int>& walls, WindowProblem& problem) {
       const auto& a = problem.bundle.structures.planes[static_cast<std::size_t>(walls[i])].normal;
       const auto& b = problem.bundle.structures.planes[static_cast<std::size_t>(walls[j])].normal;
       if (gate.holds(false, deviation_from_parallel_rad(a, b))) parallel.emplace_back(walls[i], walls[j]);
-      if (gate.holds(false, deviation_from_perpendicular_rad(a, b))) perpendicular.emplace_back(walls[i], walls[j]);
+      if (gate.holds(false, deviation_from_perpendicular_rad(a, b)))
+        perpendicular.emplace_back(walls[i], walls[j]);
     }
   }
   hold<PlaneParallel>(parallel, problem);
@@ -67,7 +68,8 @@ void tie_floors(const Map& map, WindowProblem& problem) {
     for (std::size_t i = 0; i < problem.room_of_centroid.size(); ++i) {
       const RoomNumber number = structure.rooms[static_cast<std::size_t>(problem.room_of_centroid[i])].number;
       const auto& members = structure.floors[f].rooms;
-      if (std::find(members.begin(), members.end(), number) != members.end()) rooms.push_back(static_cast<int>(i));
+      if (std::find(members.begin(), members.end(), number) != members.end())
+        rooms.push_back(static_cast<int>(i));
     }
     if (rooms.empty() || rooms.size() != structure.floors[f].rooms.size()) continue;
     const int node = static_cast<int>(problem.bundle.structures.centroids.size());

@@ -39,8 +39,9 @@ class DepthAligner {
   const DepthSampler& sampler() const { return sampler_; }
 
   // From `initial`, with `features` (may be empty), the map's planes and a prior. About 0.5 ms.
-  DepthAlignment align(const Map& map, const DepthGrid& now, const SurfaceReference& reference, const Se3& initial,
-                       std::span<const PoseObservation> features, const PosePriorTerm& prior) const;
+  DepthAlignment align(const Map& map, const DepthGrid& now, const SurfaceReference& reference,
+                       const Se3& initial, std::span<const PoseObservation> features,
+                       const PosePriorTerm& prior) const;
 
   // How well the frame's surfaces fit the reference's at a given pose; nothing is solved. For judging a pose that
   // was found in another way.

@@ -25,8 +25,8 @@ class DepthAlignmentTest : public ::testing::Test {
   DepthAlignment align(const std::vector<Wall>& room, const Se3& truth, const Se3& initial,
                        std::span<const PoseObservation> features = {}) const {
     const DepthGrid there = seen_from(reference_, room);
-    return aligner_.align(Map{}, seen_from(truth, room), {KeyframeId{0, 0}, reference_, &there}, initial, features,
-                          prior_at(initial));
+    return aligner_.align(Map{}, seen_from(truth, room), {KeyframeId{0, 0}, reference_, &there}, initial,
+                          features, prior_at(initial));
   }
   DepthAlignment judge(const std::vector<Wall>& room, const Se3& truth, const Se3& pose) const {
     const DepthGrid there = seen_from(reference_, room);

@@ -59,8 +59,7 @@ std::vector<PoseObservation> pose_observations(const Camera& camera, const Scale
 }
 
 FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, const FeatureSet& features,
-                           const Se3& initial, FrameMatches& matches,
-                           std::span<const PointToPlane> planes) {
+                           const Se3& initial, FrameMatches& matches, std::span<const PointToPlane> planes) {
   const std::vector<PoseObservation> observations = pose_observations(camera, pyramid, features, matches);
   const PoseSolution solution = solve_pose(Intrinsics::of(camera), initial, observations, planes);
   std::vector<std::uint8_t> inlier(observations.size());

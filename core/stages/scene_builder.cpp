@@ -36,8 +36,8 @@ std::vector<PlaneId> SceneBuilder::associate(KeyframeId id, const LabelGrid* lab
   const Keyframe keyframe = *draft.map().keyframes().find(id);
   {
     const Span span(trace, "extract_planes");
-    draft.record(SetPatches{id, std::make_shared<const KeyframeSurfaces>(
-                                    extract_planes(*keyframe.surface, labels, camera_, options_.extraction))});
+    draft.record(SetPatches{id, std::make_shared<const KeyframeSurfaces>(extract_planes(
+                                    *keyframe.surface, labels, camera_, options_.extraction))});
   }
   const Span span(trace, "associate_planes");
   const std::vector<SurfacePatch>& patches = draft.map().keyframes().find(id)->patches->patches;
@@ -54,7 +54,8 @@ std::vector<PlaneId> SceneBuilder::associate(KeyframeId id, const LabelGrid* lab
     }
     draft.record(AddPlaneObservation{planes[i], {id, static_cast<std::uint16_t>(i)}});
   }
-  planes.erase(std::remove_if(planes.begin(), planes.end(), [](PlaneId p) { return !p.valid(); }), planes.end());
+  planes.erase(std::remove_if(planes.begin(), planes.end(), [](PlaneId p) { return !p.valid(); }),
+               planes.end());
   std::sort(planes.begin(), planes.end());
   planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
   return planes;
@@ -140,8 +141,9 @@ bool SceneBuilder::another_is_the_wall(const Map& map, PlaneId id) const {
     const double gap = std::abs(other.plane.signed_distance(plane.plane.project(plane.plane.anchor)));
     const double other_area = shape_of(at->second).area_m2;
     if (gap < nearest_m || gap > farthest_m || other_area < larger * area) return;
-    found = width_shared_with(evidence, at->second) > most ||
-            (gap < hung_m && other_area > much_larger * area && width_within(evidence, at->second) > nearly_all);
+    found =
+        width_shared_with(evidence, at->second) > most ||
+        (gap < hung_m && other_area > much_larger * area && width_within(evidence, at->second) > nearly_all);
   });
   return found;
 }
@@ -164,14 +166,16 @@ void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft
     }
     SurfaceRole geometric =
         role_by_geometry(facts_of(draft.map(), plane), evidence->second, up, options_.role);
-    if (geometric == SurfaceRole::wall && another_is_the_wall(draft.map(), id)) geometric = SurfaceRole::other;
+    if (geometric == SurfaceRole::wall && another_is_the_wall(draft.map(), id))
+      geometric = SurfaceRole::other;
     if (geometric != SurfaceRole::undecided)
       votes[static_cast<std::size_t>(geometric)] += static_cast<float>(options_.geometry_votes);
     SurfaceRole role = SurfaceRole::undecided;
     auto most = static_cast<float>(options_.accepted_votes);
     for (std::size_t r = 1; r < surface_role_count; ++r) {
       const auto candidate = static_cast<SurfaceRole>(r);
-      if (votes[r] < most || !stance_allows(candidate, plane.plane.normal, up, options_.role.max_tilt_rad)) continue;
+      if (votes[r] < most || !stance_allows(candidate, plane.plane.normal, up, options_.role.max_tilt_rad))
+        continue;
       most = votes[r];
       role = candidate;
     }

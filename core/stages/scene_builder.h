@@ -38,14 +38,16 @@ void describe(SceneBuilderOptions& o, Visitor& field) {
 
 class SceneBuilder {
  public:
-  SceneBuilder(const SceneBuilderOptions& options, const Camera& camera) : options_(options), camera_(camera) {}
+  SceneBuilder(const SceneBuilderOptions& options, const Camera& camera)
+      : options_(options), camera_(camera) {}
 
   // The planes of a keyframe that is in the map, and all that follows from them. With `labels` (may be null) of an
   // image seen before: looks at it again. A few ms.
   MapEdit propose(KeyframeId keyframe, const Snapshot& snapshot, const LabelGrid* labels, TraceSink* trace);
 
  private:
-  std::vector<PlaneId> associate(KeyframeId keyframe, const LabelGrid* labels, Draft& draft, TraceSink* trace);
+  std::vector<PlaneId> associate(KeyframeId keyframe, const LabelGrid* labels, Draft& draft,
+                                 TraceSink* trace);
   void merge(const std::vector<PlaneId>& touched, Draft& draft);
   void find_up_direction(Draft& draft) const;
   void gather_evidence(KeyframeId keyframe, Draft& draft);

@@ -15,7 +15,8 @@ Se3 levelling(const Eigen::Vector3d& up) {
 }
 
 // One point for each cell in which the plane was seen.
-std::vector<Eigen::Vector3f> seen_points(const Map& map, const MappedPlane& plane, const Se3& level_from_world) {
+std::vector<Eigen::Vector3f> seen_points(const Map& map, const MappedPlane& plane,
+                                         const Se3& level_from_world) {
   const PlaneExtent extent = extent_of(map, plane);
   std::vector<Eigen::Vector3f> points;
   const auto& cells = extent.cells();
@@ -38,7 +39,8 @@ SceneFaces faces_of(const Map& map, const Se3& level_from_world) {
                  : plane.role == SurfaceRole::ceiling ? &faces.ceilings
                                                       : nullptr;
     if (list)
-      list->push_back({id, plane.plane.transformed(level_from_world), seen_points(map, plane, level_from_world)});
+      list->push_back(
+          {id, plane.plane.transformed(level_from_world), seen_points(map, plane, level_from_world)});
   });
   return faces;
 }
@@ -55,7 +57,8 @@ void place_nodes(const Map& map, FoundStructure& found) {
   for (const FoundFloor& floor : found.floors) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < found.rooms.size(); ++i) {
-      const bool on = std::find(floor.rooms.begin(), floor.rooms.end(), found.rooms[i].number) != floor.rooms.end();
+      const bool on =
+          std::find(floor.rooms.begin(), floor.rooms.end(), found.rooms[i].number) != floor.rooms.end();
       if (on) sum += found.room_nodes[i];
     }
     found.floor_nodes.push_back(sum / static_cast<double>(std::max<std::size_t>(1, floor.rooms.size())));
@@ -87,8 +90,8 @@ MapEdit StructureBuilder::propose(const Snapshot& snapshot, double timestamp_s, 
     carve(map, level_from_world, last);
   }
   const Span span(trace, "find_rooms");
-  auto found = std::make_shared<FoundStructure>(recognise_structure(
-      free_space_, faces_of(map, level_from_world), map.structure(), options_.structure));
+  auto found = std::make_shared<FoundStructure>(
+      recognise_structure(free_space_, faces_of(map, level_from_world), map.structure(), options_.structure));
   found->sought = true;
   found->level_from_world = level_from_world;
   place_nodes(map, *found);

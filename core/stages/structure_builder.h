@@ -28,7 +28,9 @@ class StructureBuilder {
   explicit StructureBuilder(const StructureBuilderOptions& options)
       : options_(options), free_space_(options.free_space) {}
 
-  bool due(double timestamp_s) const { return !last_pass_s_ || timestamp_s >= *last_pass_s_ + options_.interval_s; }
+  bool due(double timestamp_s) const {
+    return !last_pass_s_ || timestamp_s >= *last_pass_s_ + options_.interval_s;
+  }
   // One pass. `last`: nothing comes after it, so everything that was corrected is carved anew.
   MapEdit propose(const Snapshot& snapshot, double timestamp_s, bool last, TraceSink* trace);
 

@@ -119,10 +119,9 @@ std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const Fram
   if (static_cast<int>(landmarks) >= 2 * options_.min_inliers) matches_.keep_landmarks_only();
   const int before = matches_.size();
   constexpr double plane_gate_m = 0.06;
-  const FramePose pose =
-      solve_frame_pose(camera_, pyramid_, *now_.features, guess.world_from_camera, matches_,
-                       rows_on_planes(map, surface_now(), guess.world_from_camera, plane_gate_m,
-                                      camera_.depth_noise));
+  const FramePose pose = solve_frame_pose(
+      camera_, pyramid_, *now_.features, guess.world_from_camera, matches_,
+      rows_on_planes(map, surface_now(), guess.world_from_camera, plane_gate_m, camera_.depth_noise));
   if (!pose.trustworthy || pose.inliers < options_.min_inliers || 4 * pose.inliers < before)
     return std::nullopt;
   return pose;

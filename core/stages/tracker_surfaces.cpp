@@ -60,8 +60,9 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
   return judged.contradicts() ? std::nullopt : pose;
 }
 
-std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const SurfaceReference& reference, const Se3& guess,
-                                                   const PosePriorTerm& prior, double seconds) {
+std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const SurfaceReference& reference,
+                                                   const Se3& guess, const PosePriorTerm& prior,
+                                                   double seconds) {
   const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
   const DepthAlignment aligned = aligner_.align(map, surface_now(), reference, guess, observations, prior);
   const Se3& pose = aligned.solution.world_from_camera;

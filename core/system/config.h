@@ -30,7 +30,8 @@ struct SystemOptions {
 template <typename Visitor>
 void describe(SystemOptions& o, Visitor& field) {
   field("mode", o.mode, AllowedValues{"slam", "bc", "full"},
-        "what is estimated: slam (trajectory and landmarks), bc (and building components: walls, ground), full (and "
+        "what is estimated: slam (trajectory and landmarks), bc (and building components: walls, ground), "
+        "full (and "
         "structural elements: rooms, floors)");
   field("execution", o.execution, AllowedValues{"threaded", "serial"},
         "threaded: mapping beside tracking; serial: one after the other, the same bytes on every run");

@@ -32,12 +32,13 @@ LabelGrid sample_labels(const Segmentation& s, const Camera& camera) {
       const int u = std::min(s.roles.width - 1, (2 * c + 1) * step * s.roles.width / (2 * camera.width));
       LabelSample label;
       const std::uint8_t role = s.roles.at(u, v);
-      require_input(role < surface_role_count,
-                    "segmentation: " + std::to_string(role) + " is no role; they run from 0 to " +
-                        std::to_string(surface_role_count - 1));
+      require_input(role < surface_role_count, "segmentation: " + std::to_string(role) +
+                                                   " is no role; they run from 0 to " +
+                                                   std::to_string(surface_role_count - 1));
       label.role = static_cast<SurfaceRole>(role);
       label.confidence = s.confidence.empty() ? 1.0F : s.confidence.at(u, v);
-      require_input(label.confidence >= 0 && label.confidence <= 1, "segmentation: confidence must be 0 to 1");
+      require_input(label.confidence >= 0 && label.confidence <= 1,
+                    "segmentation: confidence must be 0 to 1");
       if (!s.instances.empty()) label.instance = s.instances.at(u, v);
       grid.samples.push_back(label);
     }
