@@ -1,9 +1,10 @@
 #include "core/scene/plane_association.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "core/geometry/principal_axes.h"
 
 namespace vsgraphs {
 
@@ -11,7 +12,7 @@ PlacedPatch place(const SurfacePatch& patch, const Se3& world_from_camera) {
   PlacedPatch placed;
   placed.plane = patch.plane.transformed(world_from_camera);
   const Eigen::Matrix2d tilt = patch.information.topLeftCorner<2, 2>();
-  const double weakest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tilt).eigenvalues()[0];
+  const double weakest = smallest_eigenvalue(tilt);
   placed.tilt_sigma_rad = 1 / std::sqrt(std::max(weakest, 1.0));
   placed.points.reserve(patch.points.size());
   for (const Eigen::Vector3f& p : patch.points) placed.points.push_back(world_from_camera * p.cast<double>());

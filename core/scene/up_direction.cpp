@@ -1,9 +1,10 @@
 #include "core/scene/up_direction.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "core/geometry/principal_axes.h"
 
 namespace vsgraphs {
 namespace {
@@ -36,8 +37,7 @@ Eigen::Vector3d refine(const std::vector<UprightEvidence>& surfaces, const Eigen
     if (how == Stance::upright) scatter += outer;
     if (how == Stance::level) scatter += s.area_m2 * Eigen::Matrix3d::Identity() - outer;
   }
-  const Eigen::Vector3d refined =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  const Eigen::Vector3d refined = weakest_axis(scatter);
   return refined.dot(up) < 0 ? Eigen::Vector3d(-refined) : refined;
 }
 
