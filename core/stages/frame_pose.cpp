@@ -65,8 +65,8 @@ FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, co
   std::vector<std::uint8_t> inlier(observations.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(solution.fit[i]);
   matches.keep(inlier);
-  return {solution.world_from_camera, solution.inliers, !solution.degenerate, solution.information,
-          solution.degenerate};
+  return {solution.world_from_camera, solution.inliers,     !solution.degenerate,
+          solution.information,       solution.information, solution.degenerate};
 }
 
 }  // namespace vsgraphs

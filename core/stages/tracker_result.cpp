@@ -36,7 +36,7 @@ TrackedFrame Tracker::finish(const Snapshot& snapshot, const FramePose& pose, Tr
   if (status == TrackStatus::relocalised) {
     motion_.forget();
   } else {
-    motion_.update(*map.resolve(last_->pose), pose.world_from_camera, seconds);
+    motion_.update(*map.resolve(last_->pose), pose.world_from_camera, seconds, pose.measured);
   }
   if (pose.degenerate) status = TrackStatus::coasting;
   lost_ = false;
