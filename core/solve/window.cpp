@@ -200,6 +200,7 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
     const Se3& after = bundle.poses[static_cast<std::size_t>(pose - problem.keyframe_of_pose.begin())];
     draft.record(MoveLandmark{id, after * (before.inverse() * landmark->point_in_world)});
   }
+  move_passenger_planes(problem, draft);
   for (std::size_t i = 0; i < bundle.poses.size(); ++i) {
     if (!bundle.pose_fixed[i]) draft.record(MoveKeyframe{problem.keyframe_of_pose[i], bundle.poses[i]});
   }

@@ -25,6 +25,15 @@ std::vector<int> pose_positions(const Map& map, const WindowProblem& problem) {
   return position;
 }
 
+// The keyframe that alone has seen the plane; invalid if there are several or none.
+KeyframeId carrier_of(const MappedPlane& plane) {
+  if (plane.observations.empty()) return {};
+  const KeyframeId first = plane.observations.front().keyframe;
+  const bool alone = std::all_of(plane.observations.begin(), plane.observations.end(),
+                                 [&](const PlaneObservation& o) { return o.keyframe == first; });
+  return alone ? first : KeyframeId{};
+}
+
 struct SeenByPose {
   int pose;
   PlaneEstimate seen;  // in that pose's frame
@@ -56,7 +65,7 @@ class PlaneGathering {
         outside_.push_back({(fixed ? seen : seen.inflated(outer_pose_error)).transformed(placed)});
       }
     }
-    return (free || wanted) && inside_.size() + outside_.size() >= 2;
+    return (free || wanted) && !carrier_of(plane).valid();
   }
   const std::vector<SeenByPose>& inside() const { return inside_; }
   const std::vector<WeightedPlane>& outside() const { return outside_; }
@@ -140,6 +149,21 @@ void build_wall_to_ground_factors(const Map& map, const Window&, const Measureme
     problem.bundle.factors.push_back(
         std::make_unique<PlanePerpendicular>(static_cast<int>(wall), nearest, PlaneAngle{}));
   }
+}
+
+void move_passenger_planes(const WindowProblem& problem, Draft& draft) {
+  const Map& map = draft.map();
+  const std::vector<int> pose_of = pose_positions(map, problem);
+  std::vector<MovePlane> moves;
+  map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
+    const auto living = map.reanchor({carrier_of(plane), Se3{}});
+    const int pose = living ? pose_of[living->keyframe.index] : -1;
+    if (pose < 0 || problem.bundle.pose_fixed[static_cast<std::size_t>(pose)]) return;
+    const Se3& before = map.keyframes().find(living->keyframe)->world_from_camera;
+    const Se3& after = problem.bundle.poses[static_cast<std::size_t>(pose)];
+    moves.push_back({id, plane.plane.transformed(after * before.inverse())});
+  });
+  for (MovePlane& move : moves) draft.record(std::move(move));
 }
 
 }  // namespace vsgraphs

@@ -47,7 +47,9 @@ Schedule some_schedule() {
   schedule.frames = {
       {0, 1.0 / 3.0, 0}, {1, std::nextafter(1305031102.1753, 0.0), 2}, {7, -0.0, 18446744073709551615U}};
   schedule.edits = {{EditEvent::Kind::insert, 0, 0, 0xffffffffffffffffU},
+                    {EditEvent::Kind::planes, 0, 0, 7},
                     {EditEvent::Kind::refine, 0, 15, 0},
+                    {EditEvent::Kind::labels, 0, 0, 0xabcdefU},
                     {EditEvent::Kind::insert, 7, 0, 10}};
   return schedule;
 }
@@ -69,11 +71,14 @@ TEST_F(ScheduleTest, WhatIsWrittenIsReadBackToTheBit) {
 TEST_F(ScheduleTest, TheFormatIsAsDescribed) {
   Schedule schedule;
   schedule.frames = {{3, 1.0, 12}};
-  schedule.edits = {{EditEvent::Kind::insert, 3, 0, 255}, {EditEvent::Kind::refine, 3, 15, 16}};
+  schedule.edits = {{EditEvent::Kind::insert, 3, 0, 255},
+                    {EditEvent::Kind::planes, 3, 0, 254},
+                    {EditEvent::Kind::labels, 1, 0, 253},
+                    {EditEvent::Kind::refine, 3, 15, 16}};
   schedule.write(path("schedule.txt"));
   std::ifstream file(path("schedule.txt"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_EQ(text, "frame 3 3ff0000000000000 12\ninsert 3 ff\nrefine 3 15 10\n");
+  EXPECT_EQ(text, "frame 3 3ff0000000000000 12\ninsert 3 ff\nplanes 3 fe\nlabels 1 fd\nrefine 3 15 10\n");
 }
 
 TEST_F(ScheduleTest, AnOlderFileIsReplacedAndNothingElseLeft) {
@@ -88,10 +93,28 @@ TEST_F(ScheduleTest, BadLinesAreNamed) {
   const std::string good = "frame 0 3ff0000000000000 0\n";
   EXPECT_EQ(complaint(good), "");
   EXPECT_THAT(complaint(good + "jump 1 2\n"), EndsWith("schedule.txt:2: not a line of a schedule"));
-  for (const char* bad :
-       {"frame", "frame 1", "frame 1 3ff", "frame x 3ff 1", "frame 1 3ff y", "frame 1 zz 1", "insert",
-        "insert 1", "insert 1 xyz", "refine 1 2", "refine 1 x ff", "", "frame 1 3ff 1 7", "insert 1 ff ff",
-        "refine 1 2 ff 3", "frame 1 3ff 1x", "insert 1 ffffffffffffffffff"}) {
+  for (const char* bad : {"frame",
+                          "frame 1",
+                          "frame 1 3ff",
+                          "frame x 3ff 1",
+                          "frame 1 3ff y",
+                          "frame 1 zz 1",
+                          "insert",
+                          "insert 1",
+                          "insert 1 xyz",
+                          "refine 1 2",
+                          "refine 1 x ff",
+                          "",
+                          "frame 1 3ff 1 7",
+                          "insert 1 ff ff",
+                          "refine 1 2 ff 3",
+                          "frame 1 3ff 1x",
+                          "insert 1 ffffffffffffffffff",
+                          "planes 1",
+                          "planes 1 2 ff",
+                          "labels",
+                          "labels 1 x",
+                          "plane 1 ff"}) {
     EXPECT_THAT(complaint(good + good + bad + "\n" + good), HasSubstr("schedule.txt:3: "))
         << "line '" << bad << "'";
   }
