@@ -160,6 +160,14 @@ bool PlaceIndex::contains(KeyframeId keyframe) const {
   return keyframe.index < ids_.size() && ids_[keyframe.index] == keyframe && !removed_[keyframe.index];
 }
 
+std::vector<KeyframeId> PlaceIndex::keyframes() const {
+  std::vector<KeyframeId> present;
+  for (const KeyframeId id : ids_) {
+    if (id.valid() && !removed_[id.index]) present.push_back(id);
+  }
+  return present;
+}
+
 std::size_t PlaceIndex::bytes() const {
   std::size_t sum = ids_.size() * sizeof(KeyframeId) + removed_.size();
   for (const auto& segment : segments_) sum += segment->bytes();

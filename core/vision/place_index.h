@@ -54,7 +54,8 @@ class PlaceIndex {
   void remove(KeyframeId keyframe);
 
   bool contains(KeyframeId keyframe) const;
-  int size() const { return size_; }  // keyframes
+  int size() const { return size_; }          // keyframes
+  std::vector<KeyframeId> keyframes() const;  // in the order of their indices
   std::size_t bytes() const;
 
   // The `max_results` most similar keyframes, best first (ties: lower index). `excluded`: a flag per keyframe index, nonzero
