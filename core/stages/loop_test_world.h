@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/map/test_map.h"
-#include "core/vision/depth_sampling.h"
 #include "core/vision/place_index.h"
 #include "core/vision/scale_pyramid.h"
 #include "core/vision/test_rooms.h"
@@ -160,13 +159,35 @@ class LoopWorld {
 
   void add_surfaces(Keyframe& keyframe, const Se3& in_room, int k) const {
     const double half_width = second(k) ? options_.second_half_width_m : options_.half_width_m;
-    const Image<float> depth = depth_of_room(camera, in_room, square_room(half_width));
-    const auto grid = std::make_shared<const DepthGrid>(DepthSampler(camera).sample(view_of(depth)));
+    const auto grid = std::make_shared<const DepthGrid>(grid_of(in_room, square_room(half_width)));
     if (options_.grids) keyframe.surface = grid;
     if (!options_.patches) return;
     auto surfaces = std::make_shared<KeyframeSurfaces>();
     for (const Wall& wall : square_room(half_width)) add_patch(*grid, in_room, wall, k, *surfaces);
     keyframe.patches = surfaces;
+  }
+
+  // What DepthSampler makes of an exact image, without the image.
+  DepthGrid grid_of(const Se3& in_room, const std::vector<Wall>& walls) const {
+    DepthGrid grid;
+    grid.columns = camera.width / grid.step_px;
+    grid.rows = camera.height / grid.step_px;
+    for (int r = 0; r < grid.rows; ++r) {
+      for (int c = 0; c < grid.columns; ++c) {
+        const Eigen::Vector3d ray = camera.unproject((c + 0.5) * grid.step_px, (r + 0.5) * grid.step_px, 1.0);
+        double depth_m = 1e9;
+        SurfaceSample& sample = grid.samples.emplace_back();
+        for (const Wall& wall : walls) {
+          const Eigen::Vector3d normal = in_room.rotation().transpose() * wall.normal;
+          const double speed = normal.dot(ray);
+          const double there = (wall.offset_m - wall.normal.dot(in_room.translation())) / speed;
+          if (speed <= 0 || there >= depth_m) continue;
+          depth_m = there;
+          sample = {(there * ray).cast<float>(), (-normal).cast<float>()};
+        }
+      }
+    }
+    return grid;
   }
 
   void add_patch(const DepthGrid& grid, const Se3& in_room, const Wall& wall, int k,
