@@ -21,6 +21,7 @@ struct LoopAlignmentOptions {
   int min_inliers = 40;
   int min_neighbour_inliers = 20;
   int supporters = 2;
+  int strong_inliers = 120;
 };
 
 template <typename Visitor>
@@ -30,6 +31,8 @@ void describe(LoopAlignmentOptions& o, Visitor& field) {
   field("min_neighbour_inliers", o.min_neighbour_inliers, 10, 500,
         "landmarks of the place that a neighbour must see to support the loop");
   field("supporters", o.supporters, 0, 5, "neighbours of the keyframe that must support the loop");
+  field("strong_inliers", o.strong_inliers, 15, 5000,
+        "a keyframe that sees as many landmarks of the place needs one supporter less");
 }
 
 // A keyframe and those around it: they share landmarks, the most closely tied first.

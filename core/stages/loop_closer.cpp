@@ -91,7 +91,7 @@ std::optional<MapEdit> LoopCloser::close(KeyframeId keyframe, const Snapshot& sn
 
 std::vector<LoopCloser::Candidate> LoopCloser::candidates(const Map& map, KeyframeId keyframe,
                                                           const PlaceIndex& places) const {
-  constexpr int looked_at = 30;
+  constexpr int looked_at = 60;
   const auto excluded = too_close(map, keyframe, options_.min_gap_keyframes);
   std::vector<std::uint8_t> covered(map.keyframes().index_bound(), 0);
   std::vector<Candidate> chosen;
@@ -119,7 +119,8 @@ std::optional<LoopAlignment> LoopCloser::verify(const Map& map, const MappedPlac
   report.verdict = LoopVerdict::unsupported;
   report.supporters = static_cast<int>(
       aligner_.supporters(map, *loop, there, without(here.keyframes, there.keyframes)).size());
-  if (report.supporters < options_.alignment.supporters) return std::nullopt;
+  const int spared = report.inliers >= options_.alignment.strong_inliers ? 1 : 0;
+  if (report.supporters < options_.alignment.supporters - spared) return std::nullopt;
 
   const Se3 correction =
       loop->world_from_camera * map.keyframes().find(here.centre)->world_from_camera.inverse();

@@ -20,7 +20,7 @@ namespace vsgraphs {
 
 struct LoopCloserOptions {
   int min_gap_keyframes = 10;
-  int max_candidates = 3;
+  int max_candidates = 5;
   double min_score = 0.01;
   int pause_keyframes = 3;
   int place_keyframes = 10;

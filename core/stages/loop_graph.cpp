@@ -23,16 +23,18 @@ Matrix6d covisible_covariance(const DriftOptions& options, int shared) {
   return isotropic_covariance(looseness * options.step_m, looseness * options.step_deg * rad_per_deg);
 }
 
-// Directions tracking could not see are known as badly as across a gap.
-Matrix6d link_covariance(const DriftOptions& options, const TrackedLink& link, const Matrix6d& gap) {
-  const Matrix6d measured = covariance_of(link.information + information_of(gap));
-  return measured + isotropic_covariance(options.step_m, options.step_deg * rad_per_deg);
-}
-
 Matrix6d gap_covariance(const DriftOptions& options, const Se3& a_from_b) {
   const double sigma_m = 0.05 + options.gap_share * a_from_b.translation().norm();
   return isotropic_covariance(sigma_m,
                               2 * rad_per_deg + options.gap_share * rotation_angle(a_from_b.rotation()));
+}
+
+// Directions tracking could not see are known as badly as across a gap.
+Matrix6d link_covariance(const DriftOptions& options, const TrackedLink& link, const Se3& step) {
+  const Matrix6d measured = covariance_of(link.information + information_of(gap_covariance(options, step)));
+  return measured + isotropic_covariance(options.step_m + options.link_share * step.translation().norm(),
+                                         options.step_deg * rad_per_deg +
+                                             options.link_share * rotation_angle(step.rotation()));
 }
 
 class Builder {
@@ -111,8 +113,8 @@ class Builder {
       const auto to = map_.reanchor({link->to, link->to_from_camera});
       const int a = to ? graph_.position_of(to->keyframe) : -1;
       if (a < 0 || a == b) continue;
-      const Matrix6d gap = gap_covariance(options_, to->keyframe_from_camera);
-      graph_.edges.push_back({a, b, 0, to->keyframe_from_camera, link_covariance(options_, *link, gap)});
+      graph_.edges.push_back(
+          {a, b, 0, to->keyframe_from_camera, link_covariance(options_, *link, to->keyframe_from_camera)});
       join(a, b);
     }
   }

@@ -18,6 +18,7 @@ struct DriftOptions {
   double share_of_way = 0.02;
   double turn_deg_per_m = 0.2;
   double share_of_turn = 0.01;
+  double link_share = 0.1;
   double gap_share = 0.2;
 };
 
@@ -31,6 +32,9 @@ void describe(DriftOptions& o, Visitor& field) {
         "drift of the orientation per metre of way, one sigma");
   field("share_of_turn", o.share_of_turn, 0.0, 1.0,
         "drift of the orientation as a share of the turning done");
+  field("link_share", o.link_share, 0.0, 1.0,
+        "drift as a share of the step where a tracked link alone ties two keyframes: surfaces slide along "
+        "themselves");
   field("gap_share", o.gap_share, 0.01, 1.0,
         "drift as a share of the step where nothing ties two keyframes that follow each other");
 }

@@ -70,7 +70,7 @@ TEST(LoopGraph, UsesTrackedLinksAndBridgesWhatIsLeft) {
   EXPECT_TRUE(has_edge(graph, 0, 2));
   EXPECT_TRUE(has_edge(graph, 2, 3)) << "one after the other in time";
   EXPECT_NEAR(graph.edges[1].a_from_b.translation().x(), 0.9, 1e-12) << "as tracked, not as mapped";
-  EXPECT_GT(graph.edges[2].covariance.trace(), 100 * graph.edges[1].covariance.trace());
+  EXPECT_GT(graph.edges[2].covariance.trace(), 5 * graph.edges[1].covariance.trace());
 }
 
 TEST(LoopGraph, KeepsTheStrongestNeighboursAndATree) {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/map/test_map.h"
+#include "core/stages/loop_test_room.h"
 #include "core/vision/place_index.h"
 #include "core/vision/scale_pyramid.h"
-#include "core/vision/test_rooms.h"
 
 namespace vsgraphs::test {
 
@@ -53,11 +53,6 @@ class LoopWorld {
 
  private:
   bool second(int k) const { return k >= options_.per_turn; }
-  static std::vector<Wall> square_room(double half_width_m) {
-    return {{{1, 0, 0}, half_width_m},  {{-1, 0, 0}, half_width_m}, {{0, 0, 1}, half_width_m},
-            {{0, 0, -1}, half_width_m}, {{0, 1, 0}, 1.5},           {{0, -1, 0}, 1.5}};
-  }
-
   void make_points() {
     Rng rng(1, "loop_world", 0);
     const double w = options_.half_width_m;
@@ -159,56 +154,15 @@ class LoopWorld {
 
   void add_surfaces(Keyframe& keyframe, const Se3& in_room, int k) const {
     const double half_width = second(k) ? options_.second_half_width_m : options_.half_width_m;
-    const auto grid = std::make_shared<const DepthGrid>(grid_of(in_room, square_room(half_width)));
+    const auto grid = std::make_shared<const DepthGrid>(grid_of(camera, in_room, square_room(half_width)));
     if (options_.grids) keyframe.surface = grid;
     if (!options_.patches) return;
     auto surfaces = std::make_shared<KeyframeSurfaces>();
-    for (const Wall& wall : square_room(half_width)) add_patch(*grid, in_room, wall, k, *surfaces);
+    const double turn = second(k) ? options_.second_patch_turn_rad : 0;
+    for (const Wall& wall : square_room(half_width)) {
+      if (auto patch = patch_on(*grid, in_room, wall, turn)) surfaces->patches.push_back(std::move(*patch));
+    }
     keyframe.patches = surfaces;
-  }
-
-  // What DepthSampler makes of an exact image, without the image.
-  DepthGrid grid_of(const Se3& in_room, const std::vector<Wall>& walls) const {
-    DepthGrid grid;
-    grid.columns = camera.width / grid.step_px;
-    grid.rows = camera.height / grid.step_px;
-    for (int r = 0; r < grid.rows; ++r) {
-      for (int c = 0; c < grid.columns; ++c) {
-        const Eigen::Vector3d ray = camera.unproject((c + 0.5) * grid.step_px, (r + 0.5) * grid.step_px, 1.0);
-        double depth_m = 1e9;
-        SurfaceSample& sample = grid.samples.emplace_back();
-        for (const Wall& wall : walls) {
-          const Eigen::Vector3d normal = in_room.rotation().transpose() * wall.normal;
-          const double speed = normal.dot(ray);
-          const double there = (wall.offset_m - wall.normal.dot(in_room.translation())) / speed;
-          if (speed <= 0 || there >= depth_m) continue;
-          depth_m = there;
-          sample = {(there * ray).cast<float>(), (-normal).cast<float>()};
-        }
-      }
-    }
-    return grid;
-  }
-
-  void add_patch(const DepthGrid& grid, const Se3& in_room, const Wall& wall, int k,
-                 KeyframeSurfaces& surfaces) const {
-    SurfacePatch patch;
-    const Eigen::Vector3d inward = in_room.rotation().transpose() * -wall.normal;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < grid.samples.size(); i += 7) {
-      const SurfaceSample& s = grid.samples[i];
-      if (!s.has_normal() || s.normal.dot(inward.cast<float>()) < 0.9F) continue;
-      patch.points.push_back(s.point);
-      sum += s.point.cast<double>();
-    }
-    if (patch.points.size() < 20) return;
-    const Eigen::Vector3d middle = sum / static_cast<double>(patch.points.size());
-    const Eigen::Matrix3d turn = so3_exp({0, second(k) ? options_.second_patch_turn_rad : 0, 0});
-    for (Eigen::Vector3f& p : patch.points) p = (middle + turn * (p.cast<double>() - middle)).cast<float>();
-    patch.plane = {turn * inward, middle, 0};
-    patch.information = Eigen::Matrix3d::Identity() * 1e4;
-    patch.area_m2 = 2;
-    surfaces.patches.push_back(patch);
   }
 
   LoopWorldOptions options_;
