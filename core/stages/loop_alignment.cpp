@@ -20,9 +20,15 @@ constexpr double neighbour_slack_m = 0.15, neighbour_slack_rad = 0.05;
 MappedPlace place_around(const Map& map, KeyframeId centre, int max_keyframes) {
   constexpr int min_shared = 15;
   MappedPlace place{centre, {centre}};
+  // Where landmarks are rare the link may be all that ties it to its neighbour.
+  if (const auto& link = map.keyframes().find(centre)->tracked_link; link && max_keyframes > 1) {
+    const auto to = map.reanchor({link->to, Se3{}});
+    if (to && to->keyframe != centre) place.keyframes.push_back(to->keyframe);
+  }
   for (const auto& [id, shared] : map.covisible(centre, min_shared)) {
     if (static_cast<int>(place.keyframes.size()) >= max_keyframes) break;
-    place.keyframes.push_back(id);
+    if (std::find(place.keyframes.begin(), place.keyframes.end(), id) == place.keyframes.end())
+      place.keyframes.push_back(id);
   }
   return place;
 }

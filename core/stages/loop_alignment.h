@@ -35,7 +35,7 @@ void describe(LoopAlignmentOptions& o, Visitor& field) {
         "a keyframe that sees as many landmarks of the place needs one supporter less");
 }
 
-// A keyframe and those around it: they share landmarks, the most closely tied first.
+// A keyframe and those around it: the one its tracked link ties it to, then those that share landmarks, most first.
 struct MappedPlace {
   KeyframeId centre;
   std::vector<KeyframeId> keyframes;  // centre first
