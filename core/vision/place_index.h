@@ -47,7 +47,7 @@ class PlaceIndex {
   explicit PlaceIndex(const PlaceIndexOptions& options = {}) : options_(options) {}
 
   // Does nothing if it is in or ever was: ids of keyframes name one thing for ever. Amortised cost below 1 ms at 2,000
-  // keyframes; a call in a thousand merges most of the index (some 50 ms). 20 bytes per feature kept (12 kB per
+  // keyframes; a call in a thousand merges most of the index (30 ms). 20 bytes per feature kept (12 kB per
   // keyframe) and 0.3 MB of tables per segment, of which there are five or so.
   void add(KeyframeId keyframe, const FeatureSet& features);
   // Does nothing if it is not in. Takes effect at once; the memory comes back with a later merge.
@@ -60,7 +60,7 @@ class PlaceIndex {
 
   // The `max_results` most similar keyframes, best first (ties: lower index). `excluded`: a flag per keyframe index, nonzero
   // ones are left out of the results (but still make a look common); indices beyond its end are not excluded.
-  // Any thread, while no other writes this copy. About 2.5 ms for 2,000 keyframes with 600 features kept of each, and linear in both.
+  // Any thread, while no other writes this copy. 2 to 3 ms for 2,000 keyframes with 600 features kept of each, and linear in both.
   std::vector<PlaceMatch> query(const FeatureSet& features, int max_results,
                                 std::span<const std::uint8_t> excluded = {}) const;
 
