@@ -1,12 +1,16 @@
 // Cost of what a frame pays for features and matching: 640x480, 1000 features, one thread. CPU time counts.
 #include <benchmark/benchmark.h>
 
+#include <memory>
 #include <numeric>
+#include <vector>
 
+#include "core/base/rng.h"
 #include "core/vision/grey.h"
 #include "core/vision/matching.h"
 #include "core/vision/orb_extractor.h"
 #include "core/vision/place_candidates.h"
+#include "core/vision/place_index.h"
 #include "core/vision/test_images.h"
 
 namespace vsgraphs {
@@ -99,6 +103,55 @@ void BM_place_candidates(benchmark::State& state) {
   state.counters["places"] = 100;
 }
 BENCHMARK(BM_place_candidates)->Unit(benchmark::kMillisecond);
+
+// What keyframe `number` of a walk sees: a thousand looks, of which the next one shares 19 in 20; two views differ in
+// one bit of eight.
+FeatureSet walk_view(int number) {
+  std::vector<Feature> features(1000);
+  std::vector<Descriptor> descriptors(features.size());
+  Rng flips(2, "walk", static_cast<std::uint64_t>(number));
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    Rng look(1, "look", i + 50 * static_cast<std::uint64_t>(number));
+    for (std::uint64_t& word : descriptors[i].words)
+      word = look.next() ^ (flips.next() & flips.next() & flips.next() & flips.next());
+  }
+  return {std::move(features), std::move(descriptors), 640, 480};
+}
+
+PlaceIndex& index_of_2000() {
+  static PlaceIndex index = [] {
+    PlaceIndex made;
+    for (std::uint32_t k = 0; k < 2000; ++k) made.add({k, 0}, walk_view(static_cast<int>(k)));
+    return made;
+  }();
+  return index;
+}
+
+void BM_place_index_query(benchmark::State& state) {
+  const PlaceIndex& index = index_of_2000();
+  const FeatureSet query = walk_view(700);
+  for (auto _ : state) benchmark::DoNotOptimize(index.query(query, 10));
+  state.counters["MB"] = static_cast<double>(index.bytes()) * 1e-6;
+}
+BENCHMARK(BM_place_index_query)->Unit(benchmark::kMillisecond);
+
+void BM_place_index_build(benchmark::State& state) {
+  std::vector<FeatureSet> views;
+  for (int k = 0; k < 2000; ++k) views.push_back(walk_view(k));
+  for (auto _ : state) {
+    PlaceIndex index;
+    for (std::uint32_t k = 0; k < 2000; ++k) index.add({k, 0}, views[k]);
+    benchmark::DoNotOptimize(index.size());
+  }
+  state.counters["keyframes"] = 2000;
+}
+BENCHMARK(BM_place_index_build)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+void BM_place_index_copy(benchmark::State& state) {
+  const PlaceIndex& index = index_of_2000();
+  for (auto _ : state) benchmark::DoNotOptimize(std::make_shared<const PlaceIndex>(index));
+}
+BENCHMARK(BM_place_index_copy)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace vsgraphs

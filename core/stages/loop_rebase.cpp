@@ -1,0 +1,176 @@
+#include "core/stages/loop_rebase.h"
+
+#include <optional>
+#include <vector>
+
+#include "core/base/check.h"
+
+namespace vsgraphs {
+
+namespace {
+
+class Rebaser {
+ public:
+  Rebaser(const MapEdit& edit, const Map& old_map, const Map& now) : edit_(edit), old_(old_map), now_(now) {
+    edited_.resize(old_.keyframes().index_bound());
+    for (const EditOperation& operation : edit.operations) {
+      const auto* move = std::get_if<MoveKeyframe>(&operation);
+      if (move && move->id.index < edited_.size()) edited_[move->id.index] = move->world_from_camera;
+    }
+    corrections_.resize(now_.keyframes().index_bound());
+    now_.keyframes().for_each([this](KeyframeId id, const Keyframe& keyframe) {
+      corrections_[id.index] = correction_of(id, keyframe);
+    });
+  }
+
+  MapEdit run() {
+    MapEdit out;
+    out.based_on = now_.version();
+    for (const EditOperation& operation : edit_.operations) {
+      std::visit([this, &out](const auto& op) { say(op, out.operations); }, operation);
+    }
+    carry_new(out.operations);
+    return out;
+  }
+
+ private:
+  // What moves a living keyframe from where it is now to where it shall be, world from world.
+  Se3 correction_of(KeyframeId id, const Keyframe& keyframe) const {
+    if (const Keyframe* before = old_.keyframes().find(id)) {
+      const auto& edited = edited_[id.index];
+      if (!edited) return Se3{};
+      const Se3 since = before->world_from_camera.inverse() * keyframe.world_from_camera;
+      return *edited * since * keyframe.world_from_camera.inverse();
+    }
+    return corrections_[anchor_of_new(id, keyframe).index];
+  }
+
+  // Older ones have their corrections by then.
+  KeyframeId anchor_of_new(KeyframeId id, const Keyframe& keyframe) const {
+    if (keyframe.tracked_link) {
+      const auto to = now_.reanchor({keyframe.tracked_link->to, Se3{}});
+      if (to && to->keyframe < id) return to->keyframe;
+    }
+    for (const auto& [other, shared] : now_.covisible(id, 1)) {
+      if (other < id) return other;
+    }
+    for (std::uint32_t index = id.index; index-- > 0;) {
+      if (const KeyframeId other = now_.keyframes().at_index(index); other.valid()) return other;
+    }
+    return id;  // the first of all: its correction is still the identity
+  }
+
+  // Where a keyframe of the old map, living or retired there, is in the three versions.
+  struct Poses {
+    Se3 old, edited, now, result;
+  };
+  std::optional<Poses> poses_of(KeyframeId id) const {
+    const auto in_old = old_.reanchor({id, Se3{}});
+    const auto in_now = now_.reanchor({id, Se3{}});
+    if (!in_old || !in_now) return std::nullopt;
+    Poses poses;
+    poses.old = *old_.resolve(*in_old);
+    const auto& edited = edited_[in_old->keyframe.index];
+    poses.edited = edited ? *edited * in_old->keyframe_from_camera : poses.old;
+    poses.now = *now_.resolve(*in_now);
+    poses.result = corrections_[in_now->keyframe.index] * poses.now;
+    return poses;
+  }
+
+  void say(const AddKeyframe&, std::vector<EditOperation>&) { refuse(); }
+  void say(const AddLandmark&, std::vector<EditOperation>&) { refuse(); }
+  void say(const AddPlane&, std::vector<EditOperation>&) { refuse(); }
+  static void refuse() { throw InvariantError("an edit that adds to the map cannot be rebased"); }
+
+  void say(const MoveKeyframe& op, std::vector<EditOperation>& out) {
+    const Keyframe* keyframe = now_.keyframes().find(op.id);
+    if (!keyframe) return;
+    const Se3 pose = corrections_[op.id.index] * keyframe->world_from_camera;
+    out.push_back(MoveKeyframe{op.id, pose.normalized()});
+  }
+
+  void say(const MoveLandmark& op, std::vector<EditOperation>& out) {
+    const Landmark* before = old_.landmarks().find(op.id);
+    const Landmark* present = now_.landmarks().find(op.id);
+    if (!before || !present) return;
+    for (const Observation& o : before->observations) {
+      const auto poses = poses_of(o.keyframe);
+      if (!poses) continue;
+      const Eigen::Vector3d change =
+          poses->edited.inverse() * op.point_in_world - poses->old.inverse() * before->point_in_world;
+      out.push_back(
+          MoveLandmark{op.id, poses->result * (poses->now.inverse() * present->point_in_world + change)});
+      return;
+    }
+  }
+
+  void say(const MovePlane& op, std::vector<EditOperation>& out) {
+    const MappedPlane* before = old_.planes().find(op.id);
+    const MappedPlane* present = now_.planes().find(op.id);
+    if (!before || !present) return;
+    for (const PlaneObservation& o : before->observations) {
+      const auto poses = poses_of(o.keyframe);
+      if (!poses) continue;
+      const AnchoredPlane was = before->plane.transformed(poses->old.inverse());
+      const AnchoredPlane edited = op.plane.transformed(poses->edited.inverse()).anchored_at(was.anchor);
+      const AnchoredPlane is = present->plane.transformed(poses->now.inverse()).anchored_at(was.anchor);
+      const AnchoredPlane both = is.retract(was.local(edited));
+      out.push_back(MovePlane{op.id, both.transformed(poses->result)});
+      return;
+    }
+  }
+
+  void say(const MergeLandmark& op, std::vector<EditOperation>& out) {
+    const LandmarkId from = now_.landmarks().resolve(op.id), into = now_.landmarks().resolve(op.into);
+    if (from.valid() && into.valid() && from != into) out.push_back(MergeLandmark{from, into});
+  }
+  void say(const MergePlane& op, std::vector<EditOperation>& out) {
+    const PlaneId from = now_.planes().resolve(op.id), into = now_.planes().resolve(op.into);
+    if (from.valid() && into.valid() && from != into) out.push_back(MergePlane{from, into});
+  }
+  void say(const AddObservation& op, std::vector<EditOperation>& out) {
+    const LandmarkId landmark = now_.landmarks().resolve(op.landmark);
+    if (landmark.valid()) out.push_back(AddObservation{landmark, op.observation});
+  }
+  void say(const AddPlaneObservation& op, std::vector<EditOperation>& out) {
+    const PlaneId plane = now_.planes().resolve(op.plane);
+    if (plane.valid()) out.push_back(AddPlaneObservation{plane, op.observation});
+  }
+  template <typename Operation>
+  void say(const Operation& op, std::vector<EditOperation>& out) {
+    out.push_back(op);
+  }
+
+  void carry_new(std::vector<EditOperation>& out) const {
+    now_.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
+      if (old_.keyframes().contains(id)) return;
+      const Se3 pose = corrections_[id.index] * keyframe.world_from_camera;
+      out.push_back(MoveKeyframe{id, pose.normalized()});
+    });
+    now_.landmarks().for_each([&](LandmarkId id, const Landmark& landmark) {
+      if (old_.landmarks().contains(id) || landmark.observations.empty()) return;
+      const Se3& correction = corrections_[landmark.observations.front().keyframe.index];
+      out.push_back(MoveLandmark{id, correction * landmark.point_in_world});
+    });
+    now_.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
+      if (old_.planes().contains(id) || plane.observations.empty()) return;
+      const auto living = now_.reanchor({plane.observations.front().keyframe, Se3{}});
+      if (living) out.push_back(MovePlane{id, plane.plane.transformed(corrections_[living->keyframe.index])});
+    });
+  }
+
+  const MapEdit& edit_;
+  const Map& old_;
+  const Map& now_;
+  std::vector<std::optional<Se3>> edited_;  // by keyframe index of the old map
+  std::vector<Se3> corrections_;            // by keyframe index of the present one
+};
+
+}  // namespace
+
+MapEdit rebase(const MapEdit& edit, const Map& old_map, const Map& now) {
+  if (edit.based_on == now.version()) return edit;
+  return Rebaser(edit, old_map, now).run();
+}
+
+}  // namespace vsgraphs

@@ -1,0 +1,66 @@
+// One immutable run of the place index: signatures of some keyframes' features, sorted by their first 16 bits.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/map/features.h"
+#include "core/map/ids.h"
+
+namespace vsgraphs {
+
+// The first half of a descriptor, which says most of what the whole says: the learnt pattern's comparisons stand in the
+// order in which they were chosen, those that flip least and repeat each other least first (learn_brief_pattern.py).
+struct PlaceSignature {
+  std::uint64_t low = 0, high = 0;
+
+  static PlaceSignature of(const Descriptor& d) { return {d.words[0], d.words[1]}; }
+  static constexpr int key_bits = 16;
+  std::uint32_t key() const { return static_cast<std::uint32_t>(low & 0xffff); }
+  int distance(const PlaceSignature& other) const {
+    return std::popcount(low ^ other.low) + std::popcount(high ^ other.high);
+  }
+};
+
+class PlaceSegment {
+ public:
+  static std::uint8_t angle_steps(float angle_rad);
+
+  // Whose feature it is, and how it was turned: 24 bits of keyframe index, 8 of angle (256 to the full turn).
+  struct Owner {
+    std::uint32_t packed = 0;
+    std::uint32_t keyframe() const { return packed >> 8; }
+    std::uint8_t angle() const { return static_cast<std::uint8_t>(packed); }
+  };
+
+  // Of one keyframe's first `count` features.
+  PlaceSegment(KeyframeId keyframe, const FeatureSet& features, int count);
+  // Of two or one (`b` null): everything but the features of keyframes whose flag in `removed` is set.
+  PlaceSegment(const PlaceSegment& a, const PlaceSegment* b, std::span<const std::uint8_t> removed);
+
+  const std::vector<KeyframeId>& keyframes() const { return keyframes_; }
+  std::size_t size() const { return signatures_.size(); }
+  struct Bucket {
+    const PlaceSignature* signatures;
+    const Owner* owners;
+    std::uint32_t size;
+  };
+  Bucket bucket(std::uint32_t key) const {
+    const std::uint32_t begin = begin_[key];
+    return {signatures_.data() + begin, owners_.data() + begin, begin_[key + 1] - begin};
+  }
+  std::size_t bytes() const;
+
+ private:
+  void add_keyframes(const PlaceSegment& from, std::span<const std::uint8_t> removed);
+  void append(const PlaceSegment& from, std::uint32_t key, std::span<const std::uint8_t> removed);
+
+  std::vector<KeyframeId> keyframes_;
+  std::vector<std::uint32_t> begin_;  // per key, and the end
+  std::vector<PlaceSignature> signatures_;
+  std::vector<Owner> owners_;
+};
+
+}  // namespace vsgraphs
