@@ -61,7 +61,7 @@ class FreeSpace {
   explicit FreeSpace(const FreeSpaceOptions& options);
 
   // Carves a keyframe's rays, taking out first what it had carved before. A sample without a reading carves nothing; one
-  // beyond the range carves up to it and hits nothing. False, and nothing changes: memory is full. About 1 ms for 80 x
+  // beyond the range carves up to it and hits nothing. False, and nothing changes: memory is full. About 2 ms for 80 x
   // 60 samples.
   bool integrate(KeyframeId keyframe, std::shared_ptr<const DepthGrid> depth, const Se3& level_from_camera);
   // Takes a keyframe's rays out again; nothing happens if it was never carved.

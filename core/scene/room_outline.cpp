@@ -10,7 +10,6 @@ namespace {
 
 constexpr double step_m = 0.1;           // at which walls and edges are looked at
 constexpr double seen_edge_cost = 0.02;  // per metre; not 0: of two outlines along walls the shorter one
-constexpr double free_edge_cost = 1.0;   // per metre of outline across the cluster's own free space
 constexpr double margin_m = 1.0;
 
 // Everything the prices depend on.
@@ -86,20 +85,9 @@ class OutlineProblem {
     double cost = 0;
     for (int i = 0; i < pieces; ++i) {
       const Eigen::Vector2d from = a + (b - a) * i / pieces, to = a + (b - a) * (i + 1) / pieces;
-      if (closed(from, to))
-        cost += seen_edge_cost;
-      else
-        cost += across_free_space(from, to) ? free_edge_cost : options_.unseen_edge_cost;
+      cost += closed(from, to) ? seen_edge_cost : options_.unseen_edge_cost;
     }
     return cost * length / pieces;
-  }
-
-  bool across_free_space(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
-    const Eigen::Vector2d middle = 0.5 * (a + b), way = (b - a).normalized();
-    const Eigen::Vector2d left(-way.y(), way.x());
-    const double reach = 1.5 * map_.frame.cell_m;
-    return label(map_.frame.index_at(middle + reach * left)) == cluster_ &&
-           label(map_.frame.index_at(middle - reach * left)) == cluster_;
   }
 
   bool closed(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {

@@ -63,12 +63,12 @@ TEST(Structure, LShapedRoomStaysOneWithFurnitureAcrossItsCorners) {
   // a passage as wide as a door.
   b.boxes = {{{0.5, 0.5}, {0.6, 0.25}, 0, 1.9, 0.785},
              {{3.45, 2.9}, {0.35, 0.3}, 0, 1.9},
-             {{3.0, 0.45}, {0.5, 0.45}, 0, 1.9}};
+             {{3.0, 0.85}, {0.5, 0.85}, 0, 1.9}};
   const TestBuilding turned = b.turned(20);
   const Eigen::Rotation2Dd turn(20 * std::numbers::pi / 180);
   const FoundStructure found =
-      found_in(turned, {turn * Eigen::Vector2d(5.2, 1.6), turn * Eigen::Vector2d(3.4, 1.8),
-                        turn * Eigen::Vector2d(1.6, 1.8), turn * Eigen::Vector2d(1.6, 4.6)});
+      found_in(turned, {turn * Eigen::Vector2d(5.2, 1.6), turn * Eigen::Vector2d(3.4, 2.1),
+                        turn * Eigen::Vector2d(1.6, 2.1), turn * Eigen::Vector2d(1.6, 4.6)});
   ASSERT_EQ(found.rooms.size(), 1u);
   EXPECT_GT(test::overlap(found.rooms[0].polygon, turned.rooms[0].polygon), 0.95);
   EXPECT_EQ(found.rooms[0].walls.size(), 6u);
