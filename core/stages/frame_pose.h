@@ -45,8 +45,8 @@ struct FramePose {
   int inliers = 0;
   bool trustworthy = false;                 // solved, and the six directions are all held by measurements
   Matrix6d information = Matrix6d::Zero();  // of the measurements, tangent on the right of the pose
-  Matrix6d measured = Matrix6d::Zero();     // the same with everything that was measured, surfaces and features
-  bool degenerate = false;                  // part of the pose is only what the motion model predicted
+  Matrix6d measured = Matrix6d::Zero();  // the same with everything that was measured, surfaces and features
+  bool degenerate = false;               // part of the pose is only what the motion model predicted
 };
 
 // Weights of one feature's measurements, from the level it was found at and the sensor's depth noise.

@@ -27,7 +27,7 @@ struct Overlap {
   double offset_m = 0;  // mean signed distance of those from the second's plane
 };
 
-Overlap overlap_of(const PlacedPatch& a, const PlacedPatch& b) {
+Overlap overlap_of(const SightedPatch& a, const SightedPatch& b) {
   Overlap overlap;
   for (const Eigen::Vector3d& p : a.points) {
     const double offset = b.plane.signed_distance(p);
@@ -45,7 +45,7 @@ Overlap overlap_of(const PlacedPatch& a, const PlacedPatch& b) {
   return overlap;
 }
 
-Verdict compare(const PlacedPatch& a, const PlacedPatch& b, const LoopCheckOptions& options) {
+Verdict compare(const SightedPatch& a, const SightedPatch& b, const LoopCheckOptions& options) {
   const Overlap overlap = overlap_of(a, b);
   if (overlap.share < min_overlap) return Verdict::says_nothing;
   const double angle = std::acos(std::clamp(a.plane.normal.dot(b.plane.normal), -1.0, 1.0)) / rad_per_deg;
@@ -61,15 +61,15 @@ Verdict compare(const PlacedPatch& a, const PlacedPatch& b, const LoopCheckOptio
 
 }  // namespace
 
-std::vector<PlacedPatch> placed_patches(const Map& map, const std::vector<KeyframeId>& keyframes,
-                                        const Se3& correction) {
-  std::vector<PlacedPatch> placed;
+std::vector<SightedPatch> placed_patches(const Map& map, const std::vector<KeyframeId>& keyframes,
+                                         const Se3& correction) {
+  std::vector<SightedPatch> placed;
   for (const KeyframeId id : keyframes) {
     const Keyframe* keyframe = map.keyframes().find(id);
     if (!keyframe || !keyframe->patches) continue;
     const Se3 world_from_camera = correction * keyframe->world_from_camera;
     for (const SurfacePatch& patch : keyframe->patches->patches) {
-      PlacedPatch& p = placed.emplace_back();
+      SightedPatch& p = placed.emplace_back();
       p.plane = patch.plane.transformed(world_from_camera);
       p.area_m2 = static_cast<double>(patch.area_m2);
       for (const Eigen::Vector3f& point : patch.points)
@@ -79,16 +79,17 @@ std::vector<PlacedPatch> placed_patches(const Map& map, const std::vector<Keyfra
   return placed;
 }
 
-bool coincide(const PlacedPatch& a, const PlacedPatch& b, const LoopCheckOptions& options) {
+bool coincide(const SightedPatch& a, const SightedPatch& b, const LoopCheckOptions& options) {
   return compare(a, b, options) == Verdict::agrees;
 }
 
-SurfaceAgreement compare_surfaces(const std::vector<PlacedPatch>& moved,
-                                  const std::vector<PlacedPatch>& standing, const LoopCheckOptions& options) {
+SurfaceAgreement compare_surfaces(const std::vector<SightedPatch>& moved,
+                                  const std::vector<SightedPatch>& standing,
+                                  const LoopCheckOptions& options) {
   SurfaceAgreement agreement;
-  for (const PlacedPatch& a : moved) {
+  for (const SightedPatch& a : moved) {
     bool agrees = false, disagrees = false;
-    for (const PlacedPatch& b : standing) {
+    for (const SightedPatch& b : standing) {
       const Verdict verdict = compare(a, b, options);
       agrees |= verdict == Verdict::agrees;
       disagrees |= verdict == Verdict::disagrees;

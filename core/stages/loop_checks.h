@@ -35,17 +35,17 @@ void describe(LoopCheckOptions& o, Visitor& field) {
 }
 
 // A planar piece where it stands in the world.
-struct PlacedPatch {
+struct SightedPatch {
   AnchoredPlane plane;
   std::vector<Eigen::Vector3d> points;
   double area_m2 = 0;
 };
 // The patches of `keyframes`, moved by `correction` (world from world). Keyframes without patches add nothing.
-std::vector<PlacedPatch> placed_patches(const Map& map, const std::vector<KeyframeId>& keyframes,
-                                        const Se3& correction);
+std::vector<SightedPatch> placed_patches(const Map& map, const std::vector<KeyframeId>& keyframes,
+                                         const Se3& correction);
 
 // Over each other, at one angle and offset, facing one way: two sights of one surface.
-bool coincide(const PlacedPatch& a, const PlacedPatch& b, const LoopCheckOptions& options);
+bool coincide(const SightedPatch& a, const SightedPatch& b, const LoopCheckOptions& options);
 
 // Surface of `moved` that coincides with a patch of `standing`, and surface that contradicts one: side by side with it at
 // another angle, parallel at a distance no second surface explains, or facing the other way in the same place. What
@@ -54,8 +54,8 @@ struct SurfaceAgreement {
   double agreeing_m2 = 0;
   double disagreeing_m2 = 0;
 };
-SurfaceAgreement compare_surfaces(const std::vector<PlacedPatch>& moved,
-                                  const std::vector<PlacedPatch>& standing, const LoopCheckOptions& options);
+SurfaceAgreement compare_surfaces(const std::vector<SightedPatch>& moved,
+                                  const std::vector<SightedPatch>& standing, const LoopCheckOptions& options);
 bool surfaces_agree(const SurfaceAgreement& agreement, const LoopCheckOptions& options);
 
 // Whether the loop leaves up where it is. True while the map knows no up.

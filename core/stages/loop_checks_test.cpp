@@ -13,8 +13,8 @@ namespace {
 constexpr double rad_per_deg = std::numbers::pi / 180.0;
 
 // 1 m x 1 m in the plane z = `z`, its middle at x = `x`, turned about its vertical middle line; faces the origin.
-PlacedPatch patch(double z, double x = 0, double turn_deg = 0, bool faces_away = false) {
-  PlacedPatch p;
+SightedPatch patch(double z, double x = 0, double turn_deg = 0, bool faces_away = false) {
+  SightedPatch p;
   const Eigen::Matrix3d turn = so3_exp({0, turn_deg * rad_per_deg, 0});
   const Eigen::Vector3d middle(x, 0, z);
   p.plane = {turn * Eigen::Vector3d(0, 0, faces_away ? 1 : -1), middle, 0};
@@ -27,7 +27,7 @@ PlacedPatch patch(double z, double x = 0, double turn_deg = 0, bool faces_away =
 struct Expectation {
   double agreeing, disagreeing;
 };
-void expect(const PlacedPatch& moved, const std::vector<PlacedPatch>& standing, Expectation e) {
+void expect(const SightedPatch& moved, const std::vector<SightedPatch>& standing, Expectation e) {
   const SurfaceAgreement a = compare_surfaces({moved}, standing, {});
   EXPECT_EQ(a.agreeing_m2, e.agreeing);
   EXPECT_EQ(a.disagreeing_m2, e.disagreeing);
@@ -133,7 +133,7 @@ TEST(LoopChecks, PatchesStandWhereTheirKeyframesDo) {
   const auto placed = placed_patches(world.map, world.ids, test::standing_at(0, 0, 2));
   ASSERT_FALSE(placed.empty());
   bool ahead = false;
-  for (const PlacedPatch& p : placed) {
+  for (const SightedPatch& p : placed) {
     for (const Eigen::Vector3d& point : p.points) EXPECT_NEAR(p.plane.signed_distance(point), 0, 1e-3);
     ahead |= std::abs(p.plane.signed_distance({0, 0, 5})) < 1e-3 && p.plane.normal.z() < -0.99;
   }

@@ -90,7 +90,7 @@ namespace {
 
 struct SeenPlane {
   PlaneId id;
-  std::vector<PlacedPatch> patches;  // as seen from the keyframes asked for
+  std::vector<SightedPatch> patches;  // as seen from the keyframes asked for
 };
 
 std::vector<SeenPlane> planes_seen_from(const Map& map, const std::vector<KeyframeId>& keyframes) {
@@ -101,7 +101,7 @@ std::vector<SeenPlane> planes_seen_from(const Map& map, const std::vector<Keyfra
       const SurfacePatch* patch = map.patch(o);
       if (!patch || std::find(keyframes.begin(), keyframes.end(), o.keyframe) == keyframes.end()) continue;
       const Se3& world_from_camera = map.keyframes().find(o.keyframe)->world_from_camera;
-      PlacedPatch& placed = s.patches.emplace_back();
+      SightedPatch& placed = s.patches.emplace_back();
       // The plane as mapped, where the patch saw it: one reading of it may be poor.
       placed.plane = plane.plane;
       placed.area_m2 = static_cast<double>(patch->area_m2);
@@ -114,8 +114,8 @@ std::vector<SeenPlane> planes_seen_from(const Map& map, const std::vector<Keyfra
 }
 
 bool coincide_anywhere(const SeenPlane& a, const SeenPlane& b, const LoopCheckOptions& options) {
-  for (const PlacedPatch& p : a.patches) {
-    for (const PlacedPatch& q : b.patches) {
+  for (const SightedPatch& p : a.patches) {
+    for (const SightedPatch& q : b.patches) {
       if (coincide(p, q, options) || coincide(q, p, options)) return true;
     }
   }

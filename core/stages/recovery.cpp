@@ -81,7 +81,8 @@ std::optional<FramePose> Recovery::align(const Map& map, const Source& source, c
   std::vector<std::uint8_t> inlier(candidates.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned->fit[i]);
   matches.keep(inlier);
-  return FramePose{aligned->world_from_camera, matches.size(), true, aligned->information, aligned->information, false};
+  return FramePose{aligned->world_from_camera, matches.size(),       true,
+                   aligned->information,       aligned->information, false};
 }
 
 }  // namespace vsgraphs

@@ -71,7 +71,11 @@ std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const Surface
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned.solution.fit[i]);
   matches_.keep(inlier);
   now_.surface_reference = reference.id;
-  return FramePose{pose, matches_.size(), true, aligned.surface_information, aligned.solution.information,
+  return FramePose{pose,
+                   matches_.size(),
+                   true,
+                   aligned.surface_information,
+                   aligned.solution.information,
                    aligned.solution.degenerate};
 }
 

@@ -136,6 +136,11 @@ void Config::visit(Visitor&& visitor) {
   describe_group("scene.extraction", scene.extraction, visitor);
   describe_group("scene.association", scene.association, visitor);
   describe_group("scene.role", scene.role, visitor);
+  describe_group("loop", loop, visitor);
+  describe_group("loop.alignment", loop.alignment, visitor);
+  describe_group("loop.checks", loop.checks, visitor);
+  describe_group("loop.drift", loop.drift, visitor);
+  describe_group("loop.correction", loop.correction, visitor);
   describe_group("structure", structure, visitor);
   describe_group("structure.free_space", structure.free_space, visitor);
   describe_group("structure.level", structure.structure.level, visitor);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/stages/local_mapper.h"
+#include "core/stages/loop_closer.h"
 #include "core/stages/scene_builder.h"
 #include "core/stages/structure_builder.h"
 #include "core/stages/tracker.h"
@@ -20,6 +21,7 @@ struct SystemOptions {
   std::string execution = "threaded";
   int seed = 0;
   bool realtime = false;
+  bool loop_closing = true;
   bool builds_scene() const { return mode != "slam"; }
   bool builds_structure() const { return mode == "full"; }
   int max_waiting_keyframes = 2;
@@ -37,6 +39,8 @@ void describe(SystemOptions& o, Visitor& field) {
         "threaded: mapping beside tracking; serial: one after the other, the same bytes on every run");
   field("seed", o.seed, 0, 2147483647, "start of all random numbers");
   field("realtime", o.realtime, "tracking never waits for mapping, as with a live camera");
+  field("loop_closing", o.loop_closing,
+        "places seen before are recognised and the drift since then taken out");
   field("max_waiting_keyframes", o.max_waiting_keyframes, 1, 50,
         "unless realtime: tracking waits while more keyframes than this wait for the mapper");
   field("schedule_out", o.schedule_out, AllowedValues{},
@@ -62,6 +66,7 @@ class Config {
   LocalMapperOptions mapper;
   SceneBuilderOptions scene;
   StructureBuilderOptions structure;
+  LoopCloserOptions loop;
 
   // Throws InputError: unknown key (names the nearest), wrong type, out of range (names the range).
   void set(const std::string& key, const OptionValue& value);

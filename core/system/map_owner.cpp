@@ -1,5 +1,8 @@
 #include "core/system/map_owner.h"
 
+#include "core/base/check.h"
+#include "core/stages/loop_adjustment.h"
+
 namespace vsgraphs {
 
 void SnapshotCell::publish(Content content) {
@@ -29,6 +32,9 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
       mapper_(config.mapper, camera, config.orb.pyramid()),
       scene_(config.scene, camera),
       structure_(config.structure),
+      loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
+      model_{camera, config.orb.pyramid().factor, config.mapper.sigma_px},
+      closes_loops_(config.system.loop_closing),
       cell_(cell),
       spans_("local mapping"),
       scene_spans_("scene understanding") {
@@ -66,6 +72,32 @@ bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
   }();
   apply(edit, {EditEvent::Kind::labels, frame_index, 0, 0});
   return true;
+}
+
+void MapOwner::look_for_loop() {
+  loop_edit_.reset();
+  if (!closes_loops_ || !map_.keyframes().contains(newest_)) return;
+  const Span span(&spans_, "look_for_loop");
+  follow(map_, places_);
+  LoopReport report;
+  loop_edit_ = loop_closer_.close(newest_, snapshot_, places_, report, &spans_);
+}
+
+void MapOwner::close_loop() {
+  VSG_INVARIANT(loop_edit_.has_value());
+  ++loops_;
+  apply(*loop_edit_, {EditEvent::Kind::loop, newest_frame_, 0, 0});
+  loop_edit_.reset();
+}
+
+void MapOwner::adjust_all(const std::function<bool()>& stop) {
+  constexpr int max_iterations = 10;
+  FullAdjustment adjustment(snapshot_, model_);
+  {
+    const Span span(&spans_, "full_adjustment");
+    adjustment.advance(max_iterations, stop);
+  }
+  apply(adjustment.edit(), {EditEvent::Kind::adjust, newest_frame_, adjustment.iterations(), 0});
 }
 
 void MapOwner::find_rooms(bool last) {

@@ -44,6 +44,14 @@ class MapOwner {
   // sought again; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
   void insert(const KeyframeRequest& request);
   void find_planes();
+  // After refine(): does the newest keyframe show a place mapped before? If so, close_loop() takes the drift since then
+  // out, and adjust_all() brings the whole map to its optimum.
+  void look_for_loop();
+  bool loop_found() const { return loop_edit_.has_value(); }
+  void close_loop();
+  void adjust_all(const std::function<bool()>& stop);
+  // Loops closed so far.
+  int loops() const { return loops_; }
   // Whether it is time to seek rooms again; `last`: at the end of the run.
   bool rooms_due() const { return structure_.due(newest_s_); }
   void find_rooms(bool last);
@@ -64,6 +72,12 @@ class MapOwner {
   LocalMapper mapper_;
   SceneBuilder scene_;
   StructureBuilder structure_;
+  LoopCloser loop_closer_;
+  PlaceIndex places_;
+  std::optional<MapEdit> loop_edit_;
+  int loops_ = 0;
+  MeasurementModel model_;
+  bool closes_loops_;
   SnapshotCell& cell_;
   SpanRecorder spans_, scene_spans_;
   KeyframeId newest_;

@@ -82,6 +82,16 @@ class ReplayingExecutor : public Executor {
       case EditEvent::Kind::refine: {
         int left = event.iterations;
         owner_.refine([&left] { return left-- <= 0; });
+        owner_.look_for_loop();
+        break;
+      }
+      case EditEvent::Kind::loop:
+        require_run(owner_.loop_found(), departed(event));
+        owner_.close_loop();
+        break;
+      case EditEvent::Kind::adjust: {
+        int left = event.iterations;
+        owner_.adjust_all([&left] { return left-- <= 0; });
         break;
       }
     }

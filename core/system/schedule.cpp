@@ -15,12 +15,14 @@ namespace vsgraphs {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, EditEvent::Kind>, 6> kinds = {{
+constexpr std::array<std::pair<const char*, EditEvent::Kind>, 8> kinds = {{
     {"insert", EditEvent::Kind::insert},
     {"planes", EditEvent::Kind::planes},
     {"labels", EditEvent::Kind::labels},
     {"rooms", EditEvent::Kind::rooms},
     {"rooms_last", EditEvent::Kind::rooms_last},
+    {"loop", EditEvent::Kind::loop},
+    {"adjust", EditEvent::Kind::adjust},
     {"refine", EditEvent::Kind::refine},
 }};
 
@@ -55,7 +57,7 @@ Schedule Schedule::read(const std::string& path) {
       EditEvent e;
       e.kind = *kind;
       ok = static_cast<bool>(in >> e.frame);
-      if (e.kind == EditEvent::Kind::refine) ok = ok && static_cast<bool>(in >> e.iterations);
+      if (e.iterates()) ok = ok && static_cast<bool>(in >> e.iterations);
       ok = ok && static_cast<bool>(in >> std::hex >> e.hash);
       schedule.edits.push_back(e);
     } else {
@@ -78,7 +80,7 @@ void Schedule::write(const std::string& path) const {
     }
     for (const EditEvent& e : edits) {
       file << name_of(e.kind) << ' ' << e.frame;
-      if (e.kind == EditEvent::Kind::refine) file << ' ' << e.iterations;
+      if (e.iterates()) file << ' ' << e.iterations;
       file << ' ' << std::hex << e.hash << std::dec << '\n';
     }
     file.flush();

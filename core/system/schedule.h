@@ -6,6 +6,8 @@
 //   labels FRAME HASH                 a segmentation of its image arrived
 //   rooms FRAME HASH                  rooms, floors and doors were sought
 //   rooms_last FRAME HASH             the same at the end of the run
+//   loop FRAME HASH                   it closed a loop
+//   adjust FRAME ITERATIONS HASH      after which the whole map was adjusted with that many iterations
 //   refine FRAME ITERATIONS HASH      its window was adjusted with that many iterations
 #pragma once
 
@@ -22,10 +24,11 @@ struct FrameEvent {
 };
 
 struct EditEvent {
-  enum class Kind { insert, planes, labels, rooms, rooms_last, refine };
+  enum class Kind { insert, planes, labels, rooms, rooms_last, loop, adjust, refine };
   Kind kind = Kind::insert;
   std::int64_t frame = 0;
-  int iterations = 0;  // of refine
+  int iterations = 0;  // of refine and adjust
+  bool iterates() const { return kind == Kind::refine || kind == Kind::adjust; }
   std::uint64_t hash = 0;
   bool operator==(const EditEvent&) const = default;
 };

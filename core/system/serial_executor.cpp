@@ -18,6 +18,12 @@ class SerialExecutor : public Executor {
       if (options_.builds_scene()) owner_.find_planes();
       if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);
       owner_.refine([] { return false; });
+      owner_.look_for_loop();
+      if (owner_.loop_found()) {
+        owner_.close_loop();
+        owner_.adjust_all([] { return false; });
+        if (options_.builds_structure()) owner_.find_rooms(false);
+      }
     }
     return result;
   }

@@ -55,6 +55,8 @@ class ThreadedExecutor : public Executor {
  private:
   // Far above what the keyframe policy lets wait, so that a push never blocks at camera pace.
   static constexpr std::size_t queue_capacity = 64;
+  // Keyframes that wait while the whole map is adjusted, at the most: then it is cut short.
+  static constexpr std::size_t adjustment_backlog = 8;
 
   // A keyframe to make, or a segmentation of one.
   struct Work {
@@ -76,6 +78,11 @@ class ThreadedExecutor : public Executor {
         if (options_.builds_scene()) owner_.find_planes();
         if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);
         owner_.refine([this] { return requests_.size() >= 2; });
+        owner_.look_for_loop();
+        if (!owner_.loop_found()) continue;
+        owner_.close_loop();
+        owner_.adjust_all([this] { return requests_.size() >= adjustment_backlog; });
+        if (options_.builds_structure()) owner_.find_rooms(false);
       }
       if (options_.builds_structure() && owner_.version() > 0) owner_.find_rooms(true);
     } catch (const std::exception& error) {
