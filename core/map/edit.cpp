@@ -108,6 +108,8 @@ class Fnv1a {
       plane(patch.plane);
       matrix(patch.information);
       votes(patch.votes);
+      word(static_cast<std::uint64_t>(patch.samples));
+      number(static_cast<double>(patch.area_m2));
     }
   }
   void operator()(const AddPlane& op) {

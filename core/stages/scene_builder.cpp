@@ -95,8 +95,11 @@ void SceneBuilder::gather_evidence(KeyframeId keyframe, Draft& draft) {
   const Map& map = draft.map();
   const Keyframe& seen = *map.keyframes().find(keyframe);
   if (!seen.surface) return;
+  // A keyframe looked at again, for its labels, has told the planes it saw before all it can.
+  const bool again = !told_.insert(keyframe).second;
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
     auto [at, fresh] = evidence_.try_emplace(id, frame_of(plane.plane, map.up_in_world()));
+    if (again && !fresh) return;
     at->second.integrate(plane.plane, *seen.surface, seen.world_from_camera, camera_.depth_noise);
   });
 }
@@ -186,7 +189,10 @@ void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft
 void SceneBuilder::pair_faces(const std::vector<PlaneId>& touched, Draft& draft) const {
   for (const PlaneId id : touched) {
     const MappedPlane* plane = draft.map().planes().find(id);
-    if (!plane || plane->role != SurfaceRole::wall || plane->other_face.valid()) continue;
+    if (!plane) continue;
+    const bool wall = plane->role == SurfaceRole::wall;
+    if (!wall && plane->other_face.valid()) draft.record(PairFaces{id, {}, 0});
+    if (!wall || plane->other_face.valid()) continue;
     if (const auto other = find_other_face(draft.map(), id, options_.association))
       draft.record(PairFaces{id, other->id, other->thickness_m});
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "core/base/trace.h"
 #include "core/geometry/camera.h"
@@ -60,6 +61,7 @@ class SceneBuilder {
   SceneBuilderOptions options_;
   Camera camera_;
   std::map<PlaneId, PlaneEvidence> evidence_;  // once it is known which way is up
+  std::set<KeyframeId> told_;                  // keyframes whose rays are in it
 };
 
 }  // namespace vsgraphs

@@ -45,7 +45,9 @@ def run(
     camera: Annotated[
         str | None, typer.Option(help="camera.yaml or a known camera's name, if the folder has none.")
     ] = None,
-    mode: Annotated[str | None, typer.Option(help="What is estimated: slam.")] = None,
+    mode: Annotated[
+        str | None, typer.Option(help="slam: landmarks; bc: and walls, ground; full: and rooms (default).")
+    ] = None,
     execution: Annotated[str | None, typer.Option(help="threaded (default) or serial.")] = None,
     realtime: Annotated[
         bool,
@@ -60,6 +62,9 @@ def run(
     segmenter: Annotated[
         str, typer.Option(help="What tells surfaces apart: geometry, onnx:FILE, labels:DIR.")
     ] = "geometry",
+    map_colours: Annotated[
+        str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
+    ] = "image",
     schedule_out: Annotated[
         Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
     ] = None,
@@ -83,6 +88,7 @@ def run(
             camera=camera,
             max_frames=max_frames,
             segmenter=segmenter,
+            map_colours=map_colours,
             config_file=config,
             assignments=list(set_ or []),
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},

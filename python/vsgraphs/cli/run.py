@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 _DRAIN_LIMIT_S = 10.0
 
 
+MAP_COLOURS = ("image", "class")
+
+
 @dataclass
 class RunRequest:
     """What the user asked for."""
@@ -38,6 +41,7 @@ class RunRequest:
     camera: str | None = None
     max_frames: int | None = None
     segmenter: str = "geometry"
+    map_colours: str = "image"
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
@@ -46,6 +50,8 @@ class RunRequest:
 def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
     sequence = open_sequence(request.source, request.camera)
+    if request.map_colours not in MAP_COLOURS:
+        raise InputError(f"--map-colours {request.map_colours}: must be one of {', '.join(MAP_COLOURS)}")
     segmenter = _make_segmenter(request.segmenter)
     prepare_directory(request.out)
     _check_schedule_out(request)
@@ -185,4 +191,5 @@ def _outcome(
         wall_s=time.monotonic() - began,
         startup_s=None if first is None else first - started,
         segmenter=request.segmenter,
+        map_colours=request.map_colours,
     )
