@@ -31,16 +31,21 @@ class DoorRays {
     counts_.lintel = counts_.up;
   }
 
-  void add(const FreeSpace::View& view, double range_m) {
+  // Can rays of this view have gone through?
+  bool faced_by(const FreeSpace::View& view, double range_m) const {
     const Eigen::Vector3d camera = in_opening(view.level_from_camera.translation());
-    if (camera.head<2>().norm() > range_m + counts_.reach_m || camera.z() < -0.5 || camera.z() > top_m)
-      return;
-    if (std::abs(camera.y()) < bin_m) return;
-    for (const SurfaceSample& sample : view.depth->samples) {
-      if (!(sample.point.z() > 0))
-        continue;  // far readings are welcome: where a ray crosses does not hang on its length
-      add(camera, in_opening(view.level_from_camera * sample.point.cast<double>().eval()));
-    }
+    const Eigen::Vector2d looks = view.level_from_camera.rotation().col(2).head<2>();
+    const Eigen::Vector2d to = opening_.center - view.level_from_camera.translation().head<2>();
+    return camera.head<2>().norm() <= range_m && camera.z() > -0.5 && camera.z() < top_m &&
+           std::abs(camera.y()) > bin_m && looks.dot(to) > 0.5 * looks.norm() * to.norm();
+  }
+
+  void add(const FreeSpace::View& view) {
+    const Eigen::Vector3d camera = in_opening(view.level_from_camera.translation());
+    for (const SurfaceSample& sample :
+         view.depth->samples)  // far ones too: where a ray crosses does not hang on them
+      if (sample.point.z() > 0)
+        add(camera, in_opening(view.level_from_camera * sample.point.cast<double>().eval()));
   }
 
   const Crossings& counts() const { return counts_; }
@@ -120,7 +125,6 @@ void measure(const Crossings& counts, const Opening& opening, const DoorOptions&
 std::vector<FoundDoor> find_doors(const LevelMap& map, const Clusters& clusters, const RoomsOfLevel& rooms,
                                   const std::map<KeyframeId, FreeSpace::View>& views,
                                   const DoorOptions& options) {
-  constexpr double range_m = 5.0;
   std::vector<FoundDoor> doors;
   const auto room_of = [&](int cluster) {
     return cluster < 0 ? -1 : rooms.room_of_cluster[static_cast<std::size_t>(cluster)];
@@ -136,7 +140,12 @@ std::vector<FoundDoor> find_doors(const LevelMap& map, const Clusters& clusters,
     door.rooms = {rooms.rooms[static_cast<std::size_t>(behind)].number,
                   rooms.rooms[static_cast<std::size_t>(before)].number};
     DoorRays rays(o.opening, map.ground_m, options);
-    for (const auto& [keyframe, view] : views) rays.add(view, range_m);
+    std::vector<const FreeSpace::View*> facing;
+    for (const auto& [keyframe, view] : views)
+      if (rays.faced_by(view, options.range_m)) facing.push_back(&view);
+    // Spread over all of them, so that many do not cost more.
+    const std::size_t used = std::min(facing.size(), static_cast<std::size_t>(options.max_keyframes));
+    for (std::size_t i = 0; i < used; ++i) rays.add(*facing[i * facing.size() / used]);
     measure(rays.counts(), o.opening, options, door);
     doors.push_back(door);
   }
