@@ -25,7 +25,8 @@ bool DepthAlignment::convincing() const {
 bool DepthAlignment::contradicts() const { return associated >= min_samples && !convincing(); }
 
 std::vector<PointToPlane> DepthAligner::associate(const DepthGrid& now, const SurfaceReference& reference,
-                                                  const Se3& pose, double gate_m) const {
+                                                  const Se3& pose, double gate_m,
+                                                  const std::vector<std::uint8_t>& skip) const {
   constexpr float min_normal_agreement = 0.85F;
   const Se3 reference_from_now = reference.world_from_surface.inverse() * pose;
   const Eigen::Matrix3f turn = reference_from_now.rotation().cast<float>();
@@ -34,6 +35,7 @@ std::vector<PointToPlane> DepthAligner::associate(const DepthGrid& now, const Su
     for (int c = 0; c < now.columns; c += 2) {
       const SurfaceSample& sample = now.at(c, r);
       if (!sample.has_normal()) continue;
+      if (!skip.empty() && skip[static_cast<std::size_t>(r * now.columns + c)]) continue;
       const Eigen::Vector3d point = reference_from_now * sample.point.cast<double>();
       const SurfaceSample* surface = sampler_.look_up(*reference.grid, point);
       if (!surface || !surface->has_normal()) continue;
@@ -82,16 +84,18 @@ DepthAlignment DepthAligner::align(const Map& map, const DepthGrid& now, const S
   constexpr double first_gate_m = 0.4, last_gate_m = 0.08;
   DepthAlignment result;
   Se3 pose = initial;
-  std::vector<PointToPlane> rows;
+  std::vector<std::uint8_t> on_plane;
   for (int i = 0; i < iterations; ++i) {
     const double gate =
         first_gate_m * std::pow(last_gate_m / first_gate_m, static_cast<double>(i) / (iterations - 1));
-    rows = associate(now, reference, pose, gate);
-    const double weight =
-        std::sqrt(std::min(1.0, effective_samples / std::max<double>(1.0, static_cast<double>(rows.size()))));
-    std::vector<PointToPlane> weighted = rows;
+    // Where a mapped plane is known, it stands for the reference's samples: their normals are noisy, and noise of
+    // normals holds a camera before a bare wall in directions that nothing measures, a little wrong in each frame.
+    const auto on_planes =
+        rows_on_planes(map, now, pose, std::min(gate, 0.15), camera_.depth_noise, &on_plane);
+    std::vector<PointToPlane> weighted = associate(now, reference, pose, gate, on_plane);
+    const double weight = std::sqrt(std::min(
+        1.0, effective_samples / std::max(1.0, static_cast<double>(weighted.size() + on_planes.size()))));
     for (PointToPlane& row : weighted) row.inv_sigma *= weight;
-    const auto on_planes = rows_on_planes(map, now, pose, std::min(gate, 0.15), camera_.depth_noise);
     weighted.insert(weighted.end(), on_planes.begin(), on_planes.end());
     PoseSolverOptions options;
     options.rounds = i + 1 < iterations ? 1 : 2;

@@ -49,8 +49,10 @@ class DepthAligner {
                        const Se3& world_from_camera) const;
 
  private:
+  // `skip`: samples that are left out; may be empty.
   std::vector<PointToPlane> associate(const DepthGrid& now, const SurfaceReference& reference,
-                                      const Se3& pose, double gate_m) const;
+                                      const Se3& pose, double gate_m,
+                                      const std::vector<std::uint8_t>& skip = {}) const;
   void count(const std::vector<PointToPlane>& rows, const Se3& pose, DepthAlignment& result) const;
 
   Camera camera_;

@@ -29,7 +29,10 @@ std::vector<Candidate> planes_in_reach(const Map& map, const Se3& world_from_cam
 }  // namespace
 
 std::vector<PointToPlane> rows_on_planes(const Map& map, const DepthGrid& now, const Se3& world_from_camera,
-                                         double gate_m, const DepthNoise& noise, double effective) {
+                                         double gate_m, const DepthNoise& noise,
+                                         std::vector<std::uint8_t>* used) {
+  constexpr double effective = 30;
+  if (used) used->assign(now.samples.size(), 0);
   constexpr double min_normal_agreement = 0.9, frame_error_m = 0.01;
   const std::vector<Candidate> candidates = planes_in_reach(map, world_from_camera);
   std::vector<PointToPlane> rows;
@@ -54,6 +57,7 @@ std::vector<PointToPlane> rows_on_planes(const Map& map, const DepthGrid& now, c
       rows.push_back({point, plane.normal, plane.d(), 1 / std::hypot(sigma, frame_error_m)});
       row_candidate.push_back(best);
       ++count[best];
+      if (used) (*used)[static_cast<std::size_t>(r * now.columns + c)] = 1;
     }
   }
   for (std::size_t i = 0; i < rows.size(); ++i)

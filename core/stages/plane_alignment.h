@@ -14,7 +14,9 @@ namespace vsgraphs {
 // Rows for every other sample that lies, at `world_from_camera`, within `gate_m` of a plane seen by at least
 // three keyframes and faces its way. All rows on one plane together count as `effective` independent ones, each as
 // uncertain as what a whole frame's depth has in common. About 0.1 ms for 20 planes.
+// `used`: receives 1 for each sample of the grid that got a row; may be null.
 std::vector<PointToPlane> rows_on_planes(const Map& map, const DepthGrid& now, const Se3& world_from_camera,
-                                         double gate_m, const DepthNoise& noise, double effective = 30);
+                                         double gate_m, const DepthNoise& noise,
+                                         std::vector<std::uint8_t>* used = nullptr);
 
 }  // namespace vsgraphs
