@@ -59,17 +59,17 @@ class Flood {
   bool apart(int a, int b, int saddle) {
     const double lower_peak = std::min(at(a), at(b)), here = at(saddle);
     const Eigen::Vector2d center = frame_.center(saddle);
-    for (const Opening& known : openings_)  // the edges of a gap that has been judged already
+    for (const WallOpening& known : openings_)  // the edges of a gap that has been judged already
       if ((center - known.center).norm() <= 0.5 * known.width_m + 2 * frame_.cell_m) return true;
     if (lower_peak < here + min_persistence_m_) return false;
-    const std::optional<Opening> gap = gap_at(saddle);
+    const std::optional<WallOpening> gap = gap_at(saddle);
     if (!gap || !divides_({*gap, here, lower_peak})) return false;
     openings_.push_back(*gap);
     return true;
   }
 
   // The shortest line across: from the nearest obstacle to the nearest one on the other side.
-  std::optional<Opening> gap_at(int saddle) const {
+  std::optional<WallOpening> gap_at(int saddle) const {
     const Eigen::Vector2d center = frame_.center(saddle);
     const auto first = nearest_obstacle(center, at(saddle) + 2 * frame_.cell_m, Eigen::Vector2d::Zero());
     if (!first) return std::nullopt;
@@ -78,7 +78,7 @@ class Flood {
     if (!second) return std::nullopt;
     const Eigen::Vector2d across = *second - *first;
     const Eigen::Vector2d axis = across.normalized();
-    return Opening{0.5 * (*first + *second), {axis.y(), -axis.x()}, across.norm() - frame_.cell_m, 0};
+    return WallOpening{0.5 * (*first + *second), {axis.y(), -axis.x()}, across.norm() - frame_.cell_m, 0};
   }
 
   // `towards`: unit, or zero for any direction.
@@ -119,7 +119,7 @@ class Flood {
   double min_persistence_m_;
   const std::function<bool(const Narrowing&)>& divides_;
   std::vector<int> parent_;  // -1: not flooded yet
-  std::vector<Opening> openings_;
+  std::vector<WallOpening> openings_;
 };
 
 }  // namespace

@@ -12,12 +12,12 @@ namespace vsgraphs {
 struct Basins {
   GridValues<int> labels;  // 0..count-1, -1 where clearance is 0
   int count = 0;
-  std::vector<Opening> openings;  // narrow places that were taken for openings
+  std::vector<WallOpening> openings;  // narrow places that were taken for openings
 };
 
 // A narrow place: the gap, and the clearance at it and at the lower of the two peaks it divides.
 struct Narrowing {
-  Opening gap;
+  WallOpening gap;
   double clearance_m = 0, lower_peak_m = 0;
 };
 

@@ -57,7 +57,7 @@ void open_islands(const LevelMap& map, double max_island_m, GridValues<char>& op
   }
 }
 
-void close_opening(const GridFrame& frame, const Opening& opening, GridValues<char>& open) {
+void close_opening(const GridFrame& frame, const WallOpening& opening, GridValues<char>& open) {
   // Wide enough that no step between neighbouring cells leads across.
   const double half_band = 0.5 * opening.thickness_m + 0.6 * frame.cell_m;
   const double half_width = 0.5 * opening.width_m + 2 * frame.cell_m;
@@ -130,7 +130,8 @@ void keep_clusters(const GridFrame& frame, const Basins& basins, std::span<const
 }
 
 // The cluster met first on the way from the opening, on one side.
-int cluster_beside(const GridFrame& frame, const Clusters& clusters, const Opening& opening, double side) {
+int cluster_beside(const GridFrame& frame, const Clusters& clusters, const WallOpening& opening,
+                   double side) {
   const double start = 0.5 * opening.thickness_m + frame.cell_m;
   for (double d = start; d <= start + 0.6; d += 0.5 * frame.cell_m)
     for (const double s : {0.0, 0.25, -0.25}) {
@@ -149,8 +150,8 @@ Clusters find_clusters(const LevelMap& map, std::span<const WallLine> walls,
                        const OpeningOptions& opening_options) {
   GridValues<char> open = open_cells(map);
   open_islands(map, options.max_island_m, open);
-  std::vector<Opening> openings = openings_in_walls(map, walls, opening_options);
-  for (const Opening& opening : openings) close_opening(map.frame, opening, open);
+  std::vector<WallOpening> openings = openings_in_walls(map, walls, opening_options);
+  for (const WallOpening& opening : openings) close_opening(map.frame, opening, open);
   Clusters result;
   result.clearance_m = clearance_field(map.frame, open);
   const Basins basins = find_basins(
@@ -158,7 +159,7 @@ Clusters find_clusters(const LevelMap& map, std::span<const WallLine> walls,
       [&](const Narrowing& narrow) { return divides_rooms(narrow, map, walls, options, opening_options); });
   openings.insert(openings.end(), basins.openings.begin(), basins.openings.end());
   keep_clusters(map.frame, basins, cameras, options.min_area_m2, result);
-  for (const Opening& opening : openings) {
+  for (const WallOpening& opening : openings) {
     const std::array<int, 2> sides{cluster_beside(map.frame, result, opening, -1),
                                    cluster_beside(map.frame, result, opening, 1)};
     if (sides[0] != sides[1]) result.openings.push_back({opening, sides});

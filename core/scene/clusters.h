@@ -39,7 +39,7 @@ struct Cluster {
 };
 
 struct ClusterOpening {
-  Opening opening;
+  WallOpening opening;
   std::array<int, 2> clusters{-1, -1};  // behind and before the normal; -1: no cluster
 };
 

@@ -53,7 +53,7 @@ TEST(Clusters, ADoorwayDividesAWiderPassageDoesNot) {
     const Clusters found = clusters_of(two_halves(gap(cells, ':')));
     ASSERT_EQ(found.clusters.size(), 2u) << cells;
     ASSERT_EQ(found.openings.size(), 1u) << cells;
-    const Opening& opening = found.openings[0].opening;
+    const WallOpening& opening = found.openings[0].opening;
     EXPECT_NEAR(opening.width_m, 0.1 * cells, 0.11);
     EXPECT_NEAR((opening.center - Eigen::Vector2d(3.3, 2.7 - 0.8 - 0.05 * cells)).norm(), 0, 0.12);
     EXPECT_GT(std::abs(opening.normal.x()), 0.95);

@@ -22,7 +22,7 @@ struct Crossings {
 
 class DoorRays {
  public:
-  DoorRays(const Opening& opening, double ground_m, const DoorOptions& options)
+  DoorRays(const WallOpening& opening, double ground_m, const DoorOptions& options)
       : opening_(opening), ground_m_(ground_m), options_(options) {
     counts_.reach_m = 0.5 * opening.width_m + aside_m;
     counts_.along.assign(static_cast<std::size_t>(std::ceil(2 * counts_.reach_m / bin_m)), 0);
@@ -74,7 +74,7 @@ class DoorRays {
     if (bin >= 0 && bin < static_cast<double>(bins.size())) ++bins[static_cast<std::size_t>(bin)];
   }
 
-  const Opening& opening_;
+  const WallOpening& opening_;
   double ground_m_;
   const DoorOptions& options_;
   Crossings counts_;
@@ -103,7 +103,8 @@ std::optional<double> edge_m(const std::vector<int>& ended, int last_passed, int
   return std::nullopt;
 }
 
-void measure(const Crossings& counts, const Opening& opening, const DoorOptions& options, FoundDoor& door) {
+void measure(const Crossings& counts, const WallOpening& opening, const DoorOptions& options,
+             FoundDoor& door) {
   const auto busiest = std::max_element(counts.along.begin(), counts.along.end());
   if (busiest == counts.along.end() || *busiest < options.min_rays) return;
   const std::array<int, 2> run =

@@ -47,7 +47,7 @@ bool stands_across(const WallLine& wall, const Eigen::Vector2d& end, const Eigen
   return wall.seen_m(t - 0.3, t + 0.3, true) >= 0.2;
 }
 
-int lintel_evidence(const Opening& opening, const LevelMap& map) {
+int lintel_evidence(const WallOpening& opening, const LevelMap& map) {
   int samples = 0, occupied = 0, free = 0;
   const double step = map.frame.cell_m;
   for (double s = -0.5 * opening.width_m; s <= 0.5 * opening.width_m; s += step) {
@@ -69,16 +69,16 @@ int lintel_evidence(const Opening& opening, const LevelMap& map) {
 }
 
 // The stretch between the first and last place one sees through.
-std::optional<Opening> opening_between(const WallLine& wall, double from, double to,
-                                       const OpeningOptions& options) {
+std::optional<WallOpening> opening_between(const WallLine& wall, double from, double to,
+                                           const OpeningOptions& options) {
   const double width = to - from;
   if (width < options.min_width_m || width > options.max_width_m) return std::nullopt;
-  return Opening{wall.point(0.5 * (from + to)), wall.normal(), width, 0};
+  return WallOpening{wall.point(0.5 * (from + to)), wall.normal(), width, 0};
 }
 
-std::vector<Opening> openings_along(const LevelMap& map, const WallLine& wall,
-                                    const OpeningOptions& options) {
-  std::vector<Opening> openings;
+std::vector<WallOpening> openings_along(const LevelMap& map, const WallLine& wall,
+                                        const OpeningOptions& options) {
+  std::vector<WallOpening> openings;
   const double step = 0.5 * map.frame.cell_m;
   const double first = wall.from_m() - options.max_width_m, last = wall.to_m() + options.max_width_m;
   std::optional<double> began;
@@ -96,7 +96,7 @@ std::vector<Opening> openings_along(const LevelMap& map, const WallLine& wall,
 }
 
 // A piece of the same face says the same again; the other face says how thick the wall is.
-void unite(Opening& into, const Opening& other) {
+void unite(WallOpening& into, const WallOpening& other) {
   const bool other_face = into.normal.dot(other.normal) < 0;
   const double apart = into.normal.dot(other.center - into.center);
   const double aside = into.along().dot(other.center - into.center);
@@ -107,8 +107,9 @@ void unite(Opening& into, const Opening& other) {
 
 }  // namespace
 
-OpeningEvidence opening_evidence(const Opening& opening, const LevelMap& map, std::span<const WallLine> walls,
-                                 const OpeningOptions& options, double in_line_m) {
+OpeningEvidence opening_evidence(const WallOpening& opening, const LevelMap& map,
+                                 std::span<const WallLine> walls, const OpeningOptions& options,
+                                 double in_line_m) {
   OpeningEvidence evidence;
   for (const double side : {-1.0, 1.0}) {
     const Eigen::Vector2d out = side * opening.along();
@@ -126,20 +127,20 @@ OpeningEvidence opening_evidence(const Opening& opening, const LevelMap& map, st
   return evidence;
 }
 
-bool same_opening(const Opening& a, const Opening& b, const OpeningOptions& options) {
+bool same_opening(const WallOpening& a, const WallOpening& b, const OpeningOptions& options) {
   if (std::abs(a.normal.dot(b.normal)) < parallel_cosine) return false;
   const Eigen::Vector2d between = b.center - a.center;
   return std::abs(a.normal.dot(between)) <= options.max_thickness_m &&
          std::abs(a.along().dot(between)) <= 0.5 * std::max(a.width_m, b.width_m);
 }
 
-std::vector<Opening> openings_in_walls(const LevelMap& map, std::span<const WallLine> walls,
-                                       const OpeningOptions& options) {
-  std::vector<Opening> found;
+std::vector<WallOpening> openings_in_walls(const LevelMap& map, std::span<const WallLine> walls,
+                                           const OpeningOptions& options) {
+  std::vector<WallOpening> found;
   for (const WallLine& wall : walls)
-    for (const Opening& opening : openings_along(map, wall, options)) {
+    for (const WallOpening& opening : openings_along(map, wall, options)) {
       if (!opening_evidence(opening, map, walls, options, own_line_m).sufficient()) continue;
-      const auto same = std::find_if(found.begin(), found.end(), [&](const Opening& known) {
+      const auto same = std::find_if(found.begin(), found.end(), [&](const WallOpening& known) {
         return same_opening(known, opening, options);
       });
       if (same == found.end())

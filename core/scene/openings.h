@@ -26,7 +26,7 @@ void describe(OpeningOptions& o, Visitor& field) {
   field("jamb_m", o.jamb_m, 0.1, 1.0, "an opening ends at a piece of wall no farther away than this");
 }
 
-struct Opening {
+struct WallOpening {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();   // half-way through the wall
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  // unit, across the threshold
   double width_m = 0;
@@ -45,14 +45,15 @@ struct OpeningEvidence {
 };
 
 // `in_line_m`: how well the gap's line is known.
-OpeningEvidence opening_evidence(const Opening& opening, const LevelMap& map, std::span<const WallLine> walls,
-                                 const OpeningOptions& options, double in_line_m);
+OpeningEvidence opening_evidence(const WallOpening& opening, const LevelMap& map,
+                                 std::span<const WallLine> walls, const OpeningOptions& options,
+                                 double in_line_m);
 
 // Openings in known walls; the two faces of a wall give one.
-std::vector<Opening> openings_in_walls(const LevelMap& map, std::span<const WallLine> walls,
-                                       const OpeningOptions& options);
+std::vector<WallOpening> openings_in_walls(const LevelMap& map, std::span<const WallLine> walls,
+                                           const OpeningOptions& options);
 
 // True if `a` and `b` are the same gap.
-bool same_opening(const Opening& a, const Opening& b, const OpeningOptions& options);
+bool same_opening(const WallOpening& a, const WallOpening& b, const OpeningOptions& options);
 
 }  // namespace vsgraphs

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double outside_tolerance_m = 0.01;
 
-void check_footprint(const SceneBuilder& builder, int room, const Stand& stand, const Eigen::Vector2d& half,
+void check_footprint(const SceneAssembly& builder, int room, const Stand& stand, const Eigen::Vector2d& half,
                      const std::string& key) {
   const Polygon2& polygon = builder.plan().rooms[static_cast<std::size_t>(room)].polygon;
   for (const double x : {-half.x(), half.x()}) {
@@ -25,7 +25,7 @@ void check_footprint(const SceneBuilder& builder, int room, const Stand& stand, 
   }
 }
 
-void add_box(SceneBuilder& builder, std::size_t index) {
+void add_box(SceneAssembly& builder, std::size_t index) {
   const BoxPlan plan = builder.plan().boxes[index];
   const std::string key = "boxes[" + std::to_string(index) + "] (" + plan.kind + ")";
   const int r = builder.room_index(plan.room, key + ".room");
@@ -46,7 +46,7 @@ void add_box(SceneBuilder& builder, std::size_t index) {
   }
 }
 
-void add_stairs(SceneBuilder& builder, std::size_t index) {
+void add_stairs(SceneAssembly& builder, std::size_t index) {
   const StairsPlan plan = builder.plan().stairs[index];
   const std::string key = "stairs[" + std::to_string(index) + "]";
   const int r = builder.room_index(plan.room, key + ".room");
@@ -84,7 +84,7 @@ double ground_height(const Plan& plan, int room, const Eigen::Vector2d& at) {
   return ground;
 }
 
-void build_furniture(SceneBuilder& builder) {
+void build_furniture(SceneAssembly& builder) {
   for (std::size_t i = 0; i < builder.plan().boxes.size(); ++i) add_box(builder, i);
   for (std::size_t i = 0; i < builder.plan().stairs.size(); ++i) add_stairs(builder, i);
 }

@@ -15,7 +15,7 @@ const Material white_wood{"lacquer", 3, {206, 202, 194}};
 Stand stand_at(const WallGeometry& wall) { return {{wall.p0.x(), wall.p0.y(), wall.z_floor}, wall.along}; }
 
 // The four (or three) faces that line a hole from y = 0 back to y = -depth.
-void add_reveal(SceneBuilder& builder, const Tag& tag, const Stand& stand, const Opening& o, double depth,
+void add_reveal(SceneAssembly& builder, const Tag& tag, const Stand& stand, const Opening& o, double depth,
                 const Material& sides, const Material& sill, const Tag& sill_tag) {
   const Eigen::Vector3d x = stand.direction(Eigen::Vector3d::UnitX()),
                         y = stand.direction(Eigen::Vector3d::UnitY());
@@ -27,7 +27,7 @@ void add_reveal(SceneBuilder& builder, const Tag& tag, const Stand& stand, const
   builder.add_rectangle(sill_tag, stand.at({o.along_min, -depth, o.z_min}), x, y, {w, depth}, sill);
 }
 
-void add_casing(SceneBuilder& builder, const Tag& tag, const WallGeometry& wall, const Opening& o) {
+void add_casing(SceneAssembly& builder, const Tag& tag, const WallGeometry& wall, const Opening& o) {
   const Stand stand = stand_at(wall);
   const double c = casing_width_m, d = casing_depth_m;
   const unsigned sides = all_sides & ~BoxSide::back;
@@ -40,7 +40,7 @@ void add_casing(SceneBuilder& builder, const Tag& tag, const WallGeometry& wall,
   builder.add_box(own, stand, {o.along_min, 0, o.z_max}, {o.along_max, d, o.z_max + c}, white_wood, sides);
 }
 
-void add_leaf(SceneBuilder& builder, const DoorLeafPlan& plan, DoorGeometry& door, int index) {
+void add_leaf(SceneAssembly& builder, const DoorLeafPlan& plan, DoorGeometry& door, int index) {
   const bool first = builder.plan().rooms[static_cast<std::size_t>(door.rooms[0])].id == plan.room;
   const WallGeometry& wall = builder.scene().walls[static_cast<std::size_t>(door.walls[first ? 0 : 1])];
   const Tag tag{SceneClass::door, builder.add_instance(SceneClass::door, -1, "leaf", -1, index).instance,
@@ -72,7 +72,7 @@ void add_leaf(SceneBuilder& builder, const DoorLeafPlan& plan, DoorGeometry& doo
                                     "doors[" + std::to_string(index) + "] (leaf)"});
 }
 
-void add_door(SceneBuilder& builder, std::size_t index) {
+void add_door(SceneAssembly& builder, std::size_t index) {
   Scene& scene = builder.scene();
   const auto number = static_cast<int>(index);
   const Tag tag = builder.add_instance(SceneClass::door, -1, "", -1, number);
@@ -102,7 +102,7 @@ void add_door(SceneBuilder& builder, std::size_t index) {
   if (leaf) add_leaf(builder, *leaf, scene.doors[index], number);
 }
 
-void add_window_frame(SceneBuilder& builder, const Tag& tag, const Stand& stand, const Opening& o) {
+void add_window_frame(SceneAssembly& builder, const Tag& tag, const Stand& stand, const Opening& o) {
   const double w = 0.055, y0 = -pane_depth_m, y1 = -pane_depth_m + 0.05,
                mid = 0.5 * (o.along_min + o.along_max);
   const unsigned sides = all_sides & ~BoxSide::back;
@@ -115,7 +115,7 @@ void add_window_frame(SceneBuilder& builder, const Tag& tag, const Stand& stand,
                   white_wood, sides);
 }
 
-void add_window(SceneBuilder& builder, std::size_t index) {
+void add_window(SceneAssembly& builder, std::size_t index) {
   Scene& scene = builder.scene();
   const WindowPlan plan = scene.plan.windows[index];
   WindowGeometry& window = scene.windows[index];
@@ -164,7 +164,7 @@ void add_window(SceneBuilder& builder, std::size_t index) {
 
 }  // namespace
 
-void build_openings(SceneBuilder& builder) {
+void build_openings(SceneAssembly& builder) {
   for (std::size_t i = 0; i < builder.plan().doors.size(); ++i) add_door(builder, i);
   for (std::size_t i = 0; i < builder.plan().windows.size(); ++i) add_window(builder, i);
 }

@@ -14,7 +14,7 @@ double thickness_of(const std::string& kind) {
   return 0.004;
 }
 
-void add_poster(SceneBuilder& builder, std::size_t index) {
+void add_poster(SceneAssembly& builder, std::size_t index) {
   const PosterPlan& plan = builder.plan().posters[index];
   const std::string key = "posters[" + std::to_string(index) + "]";
   const int r = builder.room_index(plan.room, key + ".room");
@@ -45,7 +45,7 @@ std::vector<std::string> poster_kinds() {
   return {"poster", "picture", "board", "clock", "notice", "socket", "switch"};
 }
 
-void build_posters(SceneBuilder& builder) {
+void build_posters(SceneAssembly& builder) {
   for (std::size_t i = 0; i < builder.plan().posters.size(); ++i) add_poster(builder, i);
 }
 

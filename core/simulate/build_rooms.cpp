@@ -19,7 +19,7 @@ Material floor_material(const RoomPlan& room, std::uint64_t seed) {
   return {"tiles", seed, {182, 172, 160}};
 }
 
-void add_horizontal_faces(SceneBuilder& builder, int r, RoomGeometry& geometry) {
+void add_horizontal_faces(SceneAssembly& builder, int r, RoomGeometry& geometry) {
   const RoomPlan room = builder.plan().rooms[static_cast<std::size_t>(r)];
   Eigen::Vector2d low = room.polygon.front(), high = low;
   for (const auto& p : room.polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -65,7 +65,7 @@ std::vector<Polygon2> wall_contours(const WallGeometry& wall) {
   return contours;
 }
 
-void add_skirting(SceneBuilder& builder, const WallGeometry& wall, const Tag& tag) {
+void add_skirting(SceneAssembly& builder, const WallGeometry& wall, const Tag& tag) {
   std::vector<double> breaks{0};
   std::vector<Opening> low;
   for (const Opening& o : wall.openings)
@@ -82,7 +82,7 @@ void add_skirting(SceneBuilder& builder, const WallGeometry& wall, const Tag& ta
   }
 }
 
-void add_walls(SceneBuilder& builder, int r, const RoomGeometry& geometry) {
+void add_walls(SceneAssembly& builder, int r, const RoomGeometry& geometry) {
   const RoomPlan& room = builder.plan().rooms[static_cast<std::size_t>(r)];
   const Material plaster{"paint", builder.plan().seed, room.wall_colour};
   for (const int w : geometry.walls) {
@@ -115,7 +115,7 @@ std::vector<Eigen::Vector2d> spread_lamps(const RoomPlan& room) {
   return lamps;
 }
 
-void add_lamps(SceneBuilder& builder, int r) {
+void add_lamps(SceneAssembly& builder, int r) {
   const RoomPlan room = builder.plan().rooms[static_cast<std::size_t>(r)];
   const WallGeometry& first =
       builder.scene()
@@ -139,7 +139,7 @@ void add_lamps(SceneBuilder& builder, int r) {
 
 std::vector<std::string> floor_kinds() { return {"tiles", "wood", "carpet", "terrazzo", "concrete"}; }
 
-void build_rooms(SceneBuilder& builder) {
+void build_rooms(SceneAssembly& builder) {
   const int count = static_cast<int>(builder.plan().rooms.size());
   for (int r = 0; r < count; ++r) {
     RoomGeometry& geometry = builder.scene().rooms[static_cast<std::size_t>(r)];

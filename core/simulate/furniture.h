@@ -11,7 +11,7 @@ namespace vsgraphs {
 // One piece being built, in its own frame: x to the right of somebody behind it, y to its front, z up; the origin is the
 // middle of its footprint.
 struct Piece {
-  SceneBuilder& builder;
+  SceneAssembly& builder;
   Tag tag;
   Stand stand;
   double w, d, h;  // half width, half depth, height

@@ -12,7 +12,7 @@ namespace {
 constexpr double corner_margin_m = 0.05;  // wall left beside an opening
 constexpr double door_reach_m = 0.4;      // how far a door's "at" may lie from either wall
 
-void add_walls(SceneBuilder& builder) {
+void add_walls(SceneAssembly& builder) {
   Scene& scene = builder.scene();
   for (std::size_t r = 0; r < scene.plan.rooms.size(); ++r) {
     const RoomPlan& room = scene.plan.rooms[r];
@@ -70,7 +70,7 @@ std::array<int, 2> walls_of_door(const Scene& scene, const DoorPlan& door, std::
   return best;
 }
 
-void add_door(SceneBuilder& builder, std::size_t index) {
+void add_door(SceneAssembly& builder, std::size_t index) {
   Scene& scene = builder.scene();
   const DoorPlan& plan = scene.plan.doors[index];
   const std::string key = "doors[" + std::to_string(index) + "]";
@@ -94,7 +94,7 @@ void add_door(SceneBuilder& builder, std::size_t index) {
   scene.doors.push_back(door);
 }
 
-void add_window(SceneBuilder& builder, std::size_t index) {
+void add_window(SceneAssembly& builder, std::size_t index) {
   Scene& scene = builder.scene();
   const WindowPlan& plan = scene.plan.windows[index];
   const std::string key = "windows[" + std::to_string(index) + "]";
@@ -121,7 +121,7 @@ double WallGeometry::area() const {
   return area;
 }
 
-void lay_out_rooms(SceneBuilder& builder) {
+void lay_out_rooms(SceneAssembly& builder) {
   add_walls(builder);
   for (std::size_t i = 0; i < builder.plan().doors.size(); ++i) add_door(builder, i);
   for (std::size_t i = 0; i < builder.plan().windows.size(); ++i) add_window(builder, i);

@@ -14,7 +14,7 @@ Eigen::Vector3d Stand::direction(const Eigen::Vector3d& d) const {
   return {xy.x(), xy.y(), d.z()};
 }
 
-Tag SceneBuilder::add_instance(SceneClass label, int room, const std::string& kind, int side, int door) {
+Tag SceneAssembly::add_instance(SceneClass label, int room, const std::string& kind, int side, int door) {
   VSG_INVARIANT(scene_.instances.size() < 65535);
   const auto id = static_cast<std::uint16_t>(scene_.instances.size());
   const std::string room_id = room < 0 ? "" : plan().rooms[static_cast<std::size_t>(room)].id;
@@ -22,7 +22,7 @@ Tag SceneBuilder::add_instance(SceneClass label, int room, const std::string& ki
   return {label, id, room};
 }
 
-Scene SceneBuilder::take() {
+Scene SceneAssembly::take() {
   scene_.materials = materials_.entries();
   return std::move(scene_);
 }
@@ -38,9 +38,9 @@ Eigen::Vector2d offset_for(const Face& face) {
 
 }  // namespace
 
-Face& SceneBuilder::add_face(const Tag& tag, const Eigen::Vector3d& origin, const Eigen::Vector3d& s_axis,
-                             const Eigen::Vector3d& t_axis, const Eigen::Vector2d& size,
-                             std::vector<Polygon2> contours, const Material& material) {
+Face& SceneAssembly::add_face(const Tag& tag, const Eigen::Vector3d& origin, const Eigen::Vector3d& s_axis,
+                              const Eigen::Vector3d& t_axis, const Eigen::Vector2d& size,
+                              std::vector<Polygon2> contours, const Material& material) {
   Material shaped = material;
   shaped.aspect = size.x() / size.y();
   Face face;
@@ -60,16 +60,16 @@ Face& SceneBuilder::add_face(const Tag& tag, const Eigen::Vector3d& origin, cons
   return scene_.faces.back();
 }
 
-Face& SceneBuilder::add_rectangle(const Tag& tag, const Eigen::Vector3d& origin,
-                                  const Eigen::Vector3d& s_axis, const Eigen::Vector3d& t_axis,
-                                  const Eigen::Vector2d& size, const Material& material) {
+Face& SceneAssembly::add_rectangle(const Tag& tag, const Eigen::Vector3d& origin,
+                                   const Eigen::Vector3d& s_axis, const Eigen::Vector3d& t_axis,
+                                   const Eigen::Vector2d& size, const Material& material) {
   const Polygon2 outline{{0, 0}, {size.x(), 0}, size, {0, size.y()}};
   return add_face(tag, origin, s_axis, t_axis, size, {outline}, material);
 }
 
-void SceneBuilder::add_box(const Tag& tag, const Stand& stand, const Eigen::Vector3d& low,
-                           const Eigen::Vector3d& high, const Material& material, unsigned sides,
-                           const std::optional<Material>& front_material) {
+void SceneAssembly::add_box(const Tag& tag, const Stand& stand, const Eigen::Vector3d& low,
+                            const Eigen::Vector3d& high, const Material& material, unsigned sides,
+                            const std::optional<Material>& front_material) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
                         z = Eigen::Vector3d::UnitZ();
   struct Side {
@@ -92,7 +92,7 @@ void SceneBuilder::add_box(const Tag& tag, const Stand& stand, const Eigen::Vect
   }
 }
 
-int SceneBuilder::room_index(const std::string& id, const std::string& where) const {
+int SceneAssembly::room_index(const std::string& id, const std::string& where) const {
   for (std::size_t i = 0; i < plan().rooms.size(); ++i)
     if (plan().rooms[i].id == id) return static_cast<int>(i);
   throw InputError(where + ": there is no room \"" + id + "\"");
@@ -100,7 +100,7 @@ int SceneBuilder::room_index(const std::string& id, const std::string& where) co
 
 Scene build_scene(const Plan& plan) {
   check_plan(plan);
-  SceneBuilder builder(plan);
+  SceneAssembly builder(plan);
   lay_out_rooms(builder);
   build_rooms(builder);
   build_openings(builder);

@@ -31,9 +31,9 @@ struct Stand {
 // Sides of a box in the order of the masks below.
 enum BoxSide : unsigned { front = 1, back = 2, right = 4, left = 8, top = 16, bottom = 32, all_sides = 63 };
 
-class SceneBuilder {
+class SceneAssembly {
  public:
-  explicit SceneBuilder(const Plan& plan) {
+  explicit SceneAssembly(const Plan& plan) {
     scene_.plan = plan;
     scene_.instances.push_back({});  // 0: nothing
   }
@@ -66,11 +66,11 @@ class SceneBuilder {
 
 // The parts of the work, one file each. They throw InputError naming the plan's field.
 void check_plan(const Plan& plan);
-void lay_out_rooms(SceneBuilder& builder);    // walls, doors and windows as geometry; no surfaces yet
-void build_rooms(SceneBuilder& builder);      // floors, ceilings, walls, skirting, lamps
-void build_openings(SceneBuilder& builder);   // doors and windows
-void build_furniture(SceneBuilder& builder);  // boxes and stairs
-void build_posters(SceneBuilder& builder);
+void lay_out_rooms(SceneAssembly& builder);    // walls, doors and windows as geometry; no surfaces yet
+void build_rooms(SceneAssembly& builder);      // floors, ceilings, walls, skirting, lamps
+void build_openings(SceneAssembly& builder);   // doors and windows
+void build_furniture(SceneAssembly& builder);  // boxes and stairs
+void build_posters(SceneAssembly& builder);
 void light_scene(Scene& scene);
 CameraPath plan_path(const Scene& scene);  // way-points to a checked path
 

@@ -33,7 +33,7 @@ std::vector<KeyframeId> Recovery::likely_places(const Map& map, const FeatureSet
     places.push_back({static_cast<int>(keyframes.size()), keyframe.features.get()});
     keyframes.push_back(id);
   });
-  PlaceOptions place_options;
+  PlaceSearchOptions place_options;
   place_options.max_candidates = options_.max_candidates;
   std::vector<KeyframeId> likely;
   for (const PlaceCandidate& candidate : find_place_candidates(now, places, place_options)) {

@@ -18,7 +18,7 @@ std::vector<int> strongest(const FeatureSet& set, int count) {
 }  // namespace
 
 std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::span<const KnownPlace> places,
-                                                  const PlaceOptions& options) {
+                                                  const PlaceSearchOptions& options) {
   require_input(options.strongest > 0 && options.max_candidates >= 0,
                 "place candidates: strongest must be positive and max_candidates not negative");
   std::vector<PlaceCandidate> candidates;

@@ -18,7 +18,7 @@ struct PlaceCandidate {
   double score = 0;  // share of the query's strong features with a mutual, distinct match, 0..1
 };
 
-struct PlaceOptions {
+struct PlaceSearchOptions {
   int strongest = 150;  // features compared per image: the first ones, as the extractor orders by strength
   int max_candidates = 5;
   int max_distance = 64;    // bits of 256
@@ -27,6 +27,6 @@ struct PlaceOptions {
 
 // The most similar places, best first (ties: as given). About 40 us per place.
 std::vector<PlaceCandidate> find_place_candidates(const FeatureSet& query, std::span<const KnownPlace> places,
-                                                  const PlaceOptions& options);
+                                                  const PlaceSearchOptions& options);
 
 }  // namespace vsgraphs

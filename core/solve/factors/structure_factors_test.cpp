@@ -79,7 +79,7 @@ TEST(RoomCentroid, JacobiansAgreeWithDifferences) {
   for (double away_m : {0.0, 1e-6, 3.0, 100.0}) {
     for (std::size_t count : {1u, 2u, 4u, 9u}) {
       StructureVariables structures;
-      structures.centroids = {{}, away_m * gaussian(rng)};
+      structures.centroids = {Eigen::Vector3d::Zero(), away_m * gaussian(rng)};
       std::vector<WallOfRoom> walls;
       for (std::size_t i = 0; i < count; ++i) {
         structures.planes.push_back({gaussian(rng).normalized(), away_m * gaussian(rng), rng.normal()});
