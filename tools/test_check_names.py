@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tools.check_names import shared_names
+from check_names import shared_names
 
 
 def test_a_name_in_two_headers_is_found_and_declarations_are_not(tmp_path: Path) -> None:
