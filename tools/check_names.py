@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails where two types of the core share a name: all are one namespace, and the linker would take either for both."""
+"""Fails where two types of the core share a name: the linker would take either for both."""
 
 from __future__ import annotations
 
