@@ -92,6 +92,7 @@ class Config:
     def __init__(self) -> None:
         self.values: dict[str, Any] = {
             "system.seed": 0,
+            "system.mode": "slam",  # what it has: no planes
             "system.realtime": False,
             "system.execution": "threaded",
             "tracker.max_features": 1000,

@@ -18,7 +18,17 @@ from conftest import Program, one_line_error, report
 from vsgraphs.cli.run import RunRequest, run_sequence
 from vsgraphs.trajectory import read_tum_trajectory
 
-OUTPUTS = ("trajectory.txt", "keyframes.txt", "map.ply", "run.json", "timeline.json")
+OUTPUTS = (
+    "trajectory.txt",
+    "keyframes.txt",
+    "map.ply",
+    "scene_graph.json",
+    "scene_graph.dsg.json",
+    "floorplan.svg",
+    "planes.ply",
+    "run.json",
+    "timeline.json",
+)
 RUN_KEYS = [
     "frames",
     "tracked",

@@ -51,7 +51,6 @@ def test_it_hands_keyframes_over(
     assert capsys.readouterr().out == f"{found} keyframes segmented, {12 - found} dropped, 0 failed\n"
 
 
-@pytest.mark.skip(reason="the core does not take segmentations yet (Slam.add_segmentation)")
 def test_it_runs_with_the_core(recorded: Path) -> None:
     command = [sys.executable, EXAMPLE, recorded]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)

@@ -35,7 +35,7 @@ class MotionModel {
  private:
   // Beyond this a straight extrapolation is worth less than standing still.
   static constexpr double max_extrapolation_s = 0.5;
-  static constexpr double fading_s = 1.0, weak_sigma = 0.03;  // m or rad
+  static constexpr double fading_s = 5.0, weak_sigma = 0.03;  // m or rad
   std::optional<Vector6d> twist_per_s_;
 };
 

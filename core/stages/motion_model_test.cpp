@@ -60,7 +60,7 @@ TEST(MotionModel, VelocityFadesWhereNothingMeasuresIt) {
   along_x_unknown(0, 0) = 0;
   Se3 pose;
   // A pose that jitters along x by more than it moves there.
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 200; ++i) {
     Vector6d step = Vector6d::Zero();
     step[0] = i % 2 == 0 ? 0.2 : 0.1;
     step[1] = 0.02;
@@ -69,7 +69,7 @@ TEST(MotionModel, VelocityFadesWhereNothingMeasuresIt) {
     pose = next;
   }
   const Vector6d velocity = (pose.inverse() * motion.predict(pose, 0.1)).log() / 0.1;
-  EXPECT_LT(std::abs(velocity[0]), 0.02) << "four seconds unmeasured: at rest";
+  EXPECT_LT(std::abs(velocity[0]), 0.02) << "twenty seconds unmeasured: at rest";
   EXPECT_NEAR(velocity[1], 0.2, 1e-9) << "measured: followed";
 }
 
