@@ -64,7 +64,10 @@ std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const Surface
                                                    const Se3& guess, const PosePriorTerm& prior,
                                                    double seconds) {
   const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
-  const DepthAlignment aligned = aligner_.align(map, surface_now(), reference, guess, observations, prior);
+  DepthAlignment aligned = aligner_.align(map, surface_now(), reference, guess, observations, prior);
+  // A mapped plane may be off, or another one than it seems after a large step: then the reference's depth decides alone.
+  if (!aligned.convincing() || !believable(aligned.solution.world_from_camera, seconds))
+    aligned = aligner_.align(Map{}, surface_now(), reference, guess, observations, prior);
   const Se3& pose = aligned.solution.world_from_camera;
   if (!aligned.convincing() || !believable(pose, seconds)) return std::nullopt;
   std::vector<std::uint8_t> inlier(observations.size());
