@@ -81,6 +81,6 @@ def _check_cached(folder: Path, plan: str, draw: int) -> None:
         raise RuntimeError(f"{folder} has no scene_gt.json: remove it to have it rendered")
     found = json.loads(truth.read_text())
     same_plan = found.get("plan") == plan or plan.endswith(".json")  # a file's plan is named inside it
-    if not same_plan or found.get("seed") != draw:
-        what = f"plan {found.get('plan')} seed {found.get('seed')}"
+    if not same_plan or found.get("noise_seed") != draw:
+        what = f"plan {found.get('plan')} draw {found.get('noise_seed')}"
         raise RuntimeError(f"{folder} holds {what}: remove it to have {plan}, draw {draw}, rendered")

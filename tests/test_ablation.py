@@ -194,10 +194,10 @@ def test_what_the_cache_holds_is_what_was_asked_for(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError, match=r"no scene_gt\.json"):
         sequences.folder("one_room", 2)
     truth = folder / "scene_gt.json"
-    truth.write_text('{"plan": "one_room", "seed": 1}')
+    truth.write_text('{"plan": "one_room", "noise_seed": 1}')
     with pytest.raises(RuntimeError, match="one_room, draw 2"):
         sequences.folder("one_room", 2)
-    truth.write_text('{"plan": "one_room", "seed": 2}')
+    truth.write_text('{"plan": "one_room", "noise_seed": 2}')
     assert sequences.folder("one_room", 2) == folder
 
 

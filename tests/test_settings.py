@@ -22,6 +22,7 @@ def test_file_nested_or_dotted(tmp_path: Path) -> None:
     apply_file(config, written(tmp_path, text))
     assert config.values == {
         "system.seed": 0,
+        "system.mode": "slam",
         "system.realtime": False,
         "system.execution": "serial",
         "tracker.max_features": 500,
