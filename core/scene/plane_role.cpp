@@ -136,6 +136,35 @@ double width_within(const PlaneEvidence& surface, const PlaneEvidence& larger) {
                           [&](int column) { return column >= span.low && column <= span.high; });
 }
 
+double farthest_from(const AnchoredPlane& plane, const PlaneEvidence& surface) {
+  double farthest = 0;
+  const auto& cells = surface.cells();
+  for (int t = cells.min_t(); t < cells.end_t(); ++t) {
+    for (int s = cells.min_s(); s < cells.end_s(); ++s) {
+      if (!surface.solid({s, t})) continue;
+      const Eigen::Vector3d middle = surface.frame().point((s + 0.5) * cell_m, (t + 0.5) * cell_m);
+      farthest = std::max(farthest, std::abs(plane.signed_distance(middle)));
+    }
+  }
+  return farthest;
+}
+
+bool larger_is_the_wall(const JudgedSurface& surface, const JudgedSurface& larger, double max_angle_rad) {
+  constexpr double nearest_m = 0.03, farthest_m = 0.8, more = 1.3, most = 0.5;
+  constexpr double hung_m = 0.25, hung_rad = 0.45, much_more = 3.0, nearly_all = 0.8;
+  const double cosine = surface.plane.normal.dot(larger.plane.normal);
+  if (cosine < std::cos(std::max(max_angle_rad, hung_rad))) return false;
+  const double area = shape_of(surface.evidence).area_m2, larger_area = shape_of(larger.evidence).area_m2;
+  if (larger_area < more * area) return false;
+  const double gap = std::abs(larger.plane.signed_distance(surface.plane.project(surface.plane.anchor)));
+  if (cosine > std::cos(max_angle_rad) && gap > nearest_m && gap < farthest_m &&
+      width_shared_with(surface.evidence, larger.evidence) > most)
+    return true;
+  const double farthest = farthest_from(larger.plane, surface.evidence);
+  return farthest > nearest_m && farthest < hung_m && larger_area > much_more * area &&
+         width_within(surface.evidence, larger.evidence) > nearly_all;
+}
+
 namespace {
 
 SurfaceRole role_of_upright(const SurfaceFacts& facts, const PlaneEvidence& evidence,

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/options.h"
+#include "core/geometry/plane.h"
 #include "core/map/surface_patch.h"
 #include "core/scene/plane_evidence.h"
 
@@ -72,6 +73,18 @@ struct SurfaceFacts {
 double width_shared_with(const PlaneEvidence& surface, const PlaneEvidence& larger);
 // Over how much of its width a surface stands before or behind the stretch from the larger one's one end to its other.
 double width_within(const PlaneEvidence& surface, const PlaneEvidence& larger);
+
+// How far the surface's farthest seen point lies from a plane, m; 0 if nothing of it was seen.
+double farthest_from(const AnchoredPlane& plane, const PlaneEvidence& surface);
+
+struct JudgedSurface {
+  const AnchoredPlane& plane;
+  const PlaneEvidence& evidence;
+};
+// Whether a larger surface close to an upright one is the wall, and this a thing before or in it: the larger one shows
+// above or below it; or it goes on to both sides and nothing of this one, which may be turned a little as the folds of a
+// curtain are, is farther than a hand from it.
+bool larger_is_the_wall(const JudgedSurface& surface, const JudgedSurface& larger, double max_angle_rad);
 
 // `undecided` where too little is known.
 SurfaceRole role_by_geometry(const SurfaceFacts& facts, const PlaneEvidence& evidence,

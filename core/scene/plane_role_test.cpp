@@ -123,6 +123,26 @@ TEST_F(PlaneRole, TheWallBehindACabinetStaysOne) {
   EXPECT_EQ(judge(front(3)), SurfaceRole::wall);
 }
 
+// A curtain whose folds look like a plane turned by 12 degrees, its middle 8 cm before the wall.
+TEST_F(PlaneRole, ACurtainTurnedAgainstItsWallHangsOnIt) {
+  const double angle_rad = 0.21;
+  const Eigen::Vector3d along(std::cos(angle_rad), std::sin(angle_rad), 0);
+  const Eigen::Vector3d normal(std::sin(angle_rad), -std::cos(angle_rad), 0);
+  const AnchoredPlane wall = front(3);
+  const PlaneEvidence wall_seen = evidence_of(wall);
+  const auto judged_at = [&](double y) {
+    const AnchoredPlane curtain = plane_at({0, y, 1.2}, normal);
+    const World empty = world;
+    world.sheet(Eigen::Vector3d(0, y, 0.6) - 0.35 * along, 0.7 * along, {0, 0, 1.3});
+    const PlaneEvidence seen = evidence_of(curtain);
+    world = empty;
+    EXPECT_FALSE(larger_is_the_wall({wall, wall_seen}, {curtain, seen}, 0.15)) << "the wall stays one";
+    return larger_is_the_wall({curtain, seen}, {wall, wall_seen}, 0.15);
+  };
+  EXPECT_TRUE(judged_at(2.9));
+  EXPECT_FALSE(judged_at(1.9)) << "in the middle of the room it is a screen, or a wall of its own";
+}
+
 TEST_F(PlaneRole, AnOpenDoorLeafIsNot) {
   // Turned out of the wall at 0.6 m: half open, and at right angles to it.
   for (const double angle_rad : {0.8, 1.4}) {

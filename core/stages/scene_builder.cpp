@@ -128,25 +128,13 @@ SurfaceFacts SceneBuilder::facts_of(const Map& map, const MappedPlane& plane) co
   return facts;
 }
 
-// Looks for a larger surface close to the plane and parallel to it that shows above or below this one, or goes on to both
-// sides of it: what is that near to a much larger wall hangs on it.
 bool SceneBuilder::another_is_the_wall(const Map& map, PlaneId id) const {
-  constexpr double nearest_m = 0.03, farthest_m = 0.8, larger = 1.3, most = 0.5, hung_m = 0.25,
-                   much_larger = 3.0, nearly_all = 0.8;
-  const MappedPlane& plane = *map.planes().find(id);
-  const PlaneEvidence& evidence = evidence_.at(id);
-  const double area = shape_of(evidence).area_m2;
+  const JudgedSurface surface{map.planes().find(id)->plane, evidence_.at(id)};
   bool found = false;
   map.planes().for_each([&](PlaneId other_id, const MappedPlane& other) {
     const auto at = evidence_.find(other_id);
     if (found || other_id == id || at == evidence_.end()) return;
-    if (!faces_the_same_way(plane.plane, other.plane, options_.association.max_angle_rad)) return;
-    const double gap = std::abs(other.plane.signed_distance(plane.plane.project(plane.plane.anchor)));
-    const double other_area = shape_of(at->second).area_m2;
-    if (gap < nearest_m || gap > farthest_m || other_area < larger * area) return;
-    found =
-        width_shared_with(evidence, at->second) > most ||
-        (gap < hung_m && other_area > much_larger * area && width_within(evidence, at->second) > nearly_all);
+    found = larger_is_the_wall(surface, {other.plane, at->second}, options_.association.max_angle_rad);
   });
   return found;
 }
