@@ -38,9 +38,7 @@ def _options(
 
 @app.command()
 def run(
-    source: Annotated[
-        Path, typer.Argument(help="Folder of the sequence (TUM, ICL-NUIM, 7-Scenes, Replica).")
-    ],
+    source: Annotated[Path, typer.Argument(help="Folder of the sequence, in any format the README lists.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory for the results.")],
     camera: Annotated[
         str | None, typer.Option(help="camera.yaml or a known camera's name, if the folder has none.")
