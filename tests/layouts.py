@@ -151,7 +151,7 @@ def _rows(matrix: np.ndarray) -> str:
 
 
 def write_scannet(folder: Path, frames: int = 4, *, colour_scale: int = 2) -> Path:
-    """ScanNet as SensReader exports it: colour of twice the size, with a camera of its own; pose 2 was lost."""
+    """ScanNet as SensReader exports it: colour twice as large, with its own camera; pose 2 was lost."""
     scene = Scene(frames=frames, depth_scale=1000.0)
     for index in range(frames):
         large = np.repeat(np.repeat(scene.rgb(index), colour_scale, axis=0), colour_scale, axis=1)
@@ -249,7 +249,7 @@ def write_openloris(folder: Path, frames: int = 4) -> Path:
 
 
 def write_redwood(folder: Path, frames: int = 4, *, colour: str = "color", camera: bool = True) -> Path:
-    """Redwood's indoor layout with Open3D's camera file; without one the images have the PrimeSense's size."""
+    """Redwood's indoor layout with Open3D's camera file; without one, images of the PrimeSense's size."""
     small = Scene(frames=frames, depth_scale=1000.0)
     scene = small if camera else Scene(frames, 640, 480, 525.0, 1000.0)
     blocks = []

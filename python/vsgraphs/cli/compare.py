@@ -63,7 +63,7 @@ def required_truth(groundtruth: Path | None) -> Path:
 
 
 def read_groundtruth(path: Path) -> Trajectory:
-    """The truth from a trajectory file (TUM, ICL-NUIM, Replica, OpenLORIS, Redwood) or a sequence's folder."""
+    """The truth from a trajectory file of any format that has one, or from a sequence's folder."""
     if path.is_dir():
         if (path / "groundtruth.txt").is_file() and not openloris.detect(path):
             return read_tum_trajectory(path / "groundtruth.txt")

@@ -32,8 +32,8 @@ def pair_by_number(colour: Path, depth: Path) -> tuple[list[tuple[int, Path, Pat
     both = [number for number in images[colour] if number in images[depth]]
     if not both:
         raise InputError(
-            f"{colour} (from {min(images[colour])}) and {depth} (from {min(images[depth])}) have no frame number "
-            "in common"
+            f"{colour} (from {min(images[colour])}) and {depth} (from {min(images[depth])}) have no frame "
+            "number in common"
         )
     warnings = []
     for folder, other in ((colour, depth), (depth, colour)):

@@ -1,5 +1,6 @@
-"""OpenLORIS-Scene (Shi et al., "Are We Ready for Service Robots? The OpenLORIS-Scene Datasets for Lifelong SLAM",
-ICRA 2020), the per-sequence packages.
+"""OpenLORIS-Scene, the per-sequence packages.
+
+Shi et al., "Are We Ready for Service Robots? The OpenLORIS-Scene Datasets for Lifelong SLAM", ICRA 2020.
 
 Layout: `color.txt` and `aligned_depth.txt` (`timestamp file`) with `color/*.png` and `aligned_depth/*.png`
 (millimetres, registered to colour), `sensors.yaml` and `trans_matrix.yaml` (OpenCV's YAML), `groundtruth.txt`
@@ -136,8 +137,8 @@ def _frames(folder: Path, size: tuple[int, int]) -> tuple[list[FrameRef], dict[s
     if not pairs:
         gap = smallest_gap(colour.stamps, depth.stamps) if colour.stamps and depth.stamps else float("nan")
         raise InputError(
-            f"{folder}: no image of color.txt and aligned_depth.txt are within {MAX_GAP_S:g} s of each other; "
-            f"the smallest gap is {gap:g} s"
+            f"{folder}: no images of color.txt and aligned_depth.txt are within {MAX_GAP_S:g} s of each "
+            f"other; the smallest gap is {gap:g} s"
         )
     warnings = colour.warnings + depth.warnings
     alone = len(colour.stamps) - len(pairs)

@@ -1,11 +1,11 @@
 """Redwood (Choi et al., "Robust Reconstruction of Indoor Scenes", CVPR 2015) and folders recorded for Open3D.
 
 Layout: colour in `color/`, `image/` or `rgb/`, depth in `depth/` (16 bit, millimetres, registered to colour);
-`camera_intrinsic.json`, `intrinsic.json` or `camera.json` as Open3D writes it (width, height, intrinsic_matrix
-column by column, perhaps depth_scale); `trajectory.log` with the true world_from_camera of the n-th colour image:
-a line of three numbers, then four rows, for each. Redwood's archives come without a camera file: its PrimeSense
-(fx = fy = 525) is then assumed and said. Images are named by frame number (time: number / 30) or, as in
-Redwood's object scans, `number-microseconds`.
+`camera_intrinsic.json`, `intrinsic.json` or `camera.json` as Open3D writes it (width, height,
+intrinsic_matrix column by column, perhaps depth_scale); `trajectory.log` with the true world_from_camera of
+the n-th colour image: a line of three numbers, then four rows, for each. Redwood's archives come without a
+camera file: its PrimeSense (fx = fy = 525) is then assumed and said. Images are named by frame number (time:
+number / 30) or, as in Redwood's object scans, `number-microseconds`.
 """
 
 from __future__ import annotations
@@ -125,8 +125,8 @@ def _matrices(path: Path) -> Array:
             numbers = []
         if len(numbers) != expected:
             raise InputError(
-                f"{path}:{number}: expected {expected} numbers (for each pose a line of three, then four rows of "
-                "four)"
+                f"{path}:{number}: expected {expected} numbers (for each pose a line of three, then four rows "
+                "of four)"
             )
         if place % 5:
             rows.append(numbers)

@@ -1,8 +1,8 @@
 """ScanNet (Dai et al., "ScanNet: Richly-annotated 3D Reconstructions of Indoor Scenes", CVPR 2017), exported.
 
-Layout, as the data set's own SensReader writes it from a .sens file: `color/N.jpg`, `depth/N.png` (millimetres),
-`pose/N.txt` (4x4 world_from_camera, -inf where the camera was lost), `intrinsic/intrinsic_color.txt` and
-`intrinsic/intrinsic_depth.txt` (4x4). Colour is larger than depth (1296x968 to 640x480) and has a camera of
+Layout, as the data set's own SensReader writes it from a .sens file: `color/N.jpg`, `depth/N.png`
+(millimetres), `pose/N.txt` (4x4 world_from_camera, -inf where the camera was lost),
+`intrinsic/intrinsic_color.txt` and `intrinsic/intrinsic_depth.txt` (4x4). Colour is larger than depth (1296x968 to 640x480) and has a camera of
 its own at the same place: it is sampled at the depth image's pixels here, so both share the depth camera.
 There are no timestamps: frame number / 30.
 """
@@ -24,8 +24,6 @@ NAME = "ScanNet"
 LOOKED_FOR = "color/, depth/, pose/ and intrinsic/"
 FRAMES_PER_S = 30.0
 
-Frames = list[tuple[int, Path, Path]]  # number, colour, depth
-
 
 def detect(folder: Path) -> bool:
     """Whether the folder looks like this format."""
@@ -36,7 +34,7 @@ def detect(folder: Path) -> bool:
 def open_folder(folder: Path, camera: str | Path | Calibration | None = None) -> RecordedSequence:
     """Opens the sequence; raises InputError when nothing in it can be used."""
     numbered, warnings = pair_by_number(folder / "color", folder / "depth")
-    sizes = (_size(numbered, 1), _size(numbered, 2))
+    sizes = (_size([colour for _, colour, _ in numbered]), _size([depth for *_, depth in numbered]))
     needs_own = camera is None and not any((folder / f"camera.{end}").is_file() for end in ("yaml", "yml"))
     calibration, remarks = choose_camera(
         folder, camera, _depth_camera(folder, sizes[1]) if needs_own else None
@@ -106,7 +104,7 @@ def _depth_camera(folder: Path, size: tuple[int, int]) -> Calibration:
 def _colour_grid(
     folder: Path, size: tuple[int, int], depth: Calibration, *, needed: bool
 ) -> ColourGrid | None:
-    """Where in the colour image the depth camera's pixels look; None where that cannot and need not be known."""
+    """Where in the colour image the depth camera's pixels look; None: not known, and not `needed`."""
     try:
         fx, fy, cx, cy = _intrinsics(folder, "color")
     except InputError:
@@ -117,14 +115,14 @@ def _colour_grid(
     return ColourGrid(size, scale, (cx - scale[0] * depth.cx, cy - scale[1] * depth.cy))
 
 
-def _size(frames: Frames, image: int) -> tuple[int, int]:
-    """(width, height) of the first readable image of a column."""
+def _size(images: list[Path]) -> tuple[int, int]:
+    """(width, height) of the first readable image."""
     from vsgraphs.datasets.decode import image_size
 
     first = None
-    for frame in frames:
+    for path in images:
         try:
-            return image_size(Path(frame[image]))
+            return image_size(path)
         except FrameError as error:
             first = first or error
-    raise InputError(f"none of the {len(frames)} images can be read; the first: {first}")
+    raise InputError(f"none of the {len(images)} images can be read; the first: {first}")
