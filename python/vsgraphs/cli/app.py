@@ -18,6 +18,9 @@ app = typer.Typer(
 )
 
 
+_VIEW_PORT = "The viewer's port (9876 unless given); a page for browsers is one above."
+
+
 def _print_version(wanted: bool) -> None:
     if wanted:
         from vsgraphs.version import version
@@ -67,10 +70,19 @@ def run(
         Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
     ] = None,
     replay: Annotated[Path | None, typer.Option(help="Repeat the run recorded in this file exactly.")] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Watch it: a window, or without a display a page for a browser.")
+    ] = False,
+    record: Annotated[
+        Path | None, typer.Option(help="Record what --view would show in this .rrd file.")
+    ] = None,
+    web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
+    view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
 ) -> None:
     """Track a camera through a recorded sequence and build the map."""
     with told():
         from vsgraphs.cli.run import RunRequest, run_sequence
+        from vsgraphs.cli.viewing import Showing
 
         shortcuts = {
             "system.mode": mode,
@@ -90,6 +102,7 @@ def run(
             config_file=config,
             assignments=list(set_ or []),
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
+            showing=Showing(view, record, view_port, web),
         )
         code = run_sequence(request)
     raise typer.Exit(code)
@@ -138,6 +151,24 @@ def evaluate(
         from vsgraphs.cli.compare import CompareRequest, compare, required_truth
 
         compare(CompareRequest(trajectory, required_truth(groundtruth), sequence, max_dt, json_file, plot))
+
+
+@app.command()
+def view(
+    run: Annotated[Path, typer.Argument(help="Directory that `vsgraphs run --out` wrote.")],
+    web: Annotated[
+        bool, typer.Option("--web", help="A page for a browser also where a window could open.")
+    ] = False,
+    record: Annotated[
+        Path | None, typer.Option(help="Write what is shown to this .rrd file; no window opens.")
+    ] = None,
+    view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+) -> None:
+    """Open a finished run: map, walls, rooms and the graph above them."""
+    with told():
+        from vsgraphs.cli.viewing import Showing, view_run
+
+        view_run(run, Showing(record is None, record, view_port, web))
 
 
 @app.command()

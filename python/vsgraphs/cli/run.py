@@ -17,6 +17,7 @@ from vsgraphs.cli.progress import Progress
 from vsgraphs.cli.results import RunOutcome, summarise, write_results
 from vsgraphs.cli.session import Session, Tally
 from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
+from vsgraphs.cli.viewing import RunView, Showing
 from vsgraphs.datasets import RecordedSequence, open_sequence
 from vsgraphs.datasets.prefetch import Prefetcher
 from vsgraphs.errors import InputError
@@ -45,6 +46,7 @@ class RunRequest:
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
+    showing: Showing = field(default_factory=Showing)
 
 
 def run_sequence(request: RunRequest) -> int:
@@ -55,6 +57,7 @@ def run_sequence(request: RunRequest) -> int:
     segmenter = _make_segmenter(request.segmenter)
     prepare_directory(request.out)
     _check_schedule_out(request)
+    view = RunView(request.showing, lambda line: print(line, file=sys.stderr, flush=True))
     frames = sequence.frames[: request.max_frames]
     print(sequence.describe(), flush=True)
     for line in sequence.warnings:
@@ -69,7 +72,9 @@ def run_sequence(request: RunRequest) -> int:
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
             stamps = [frame.timestamp for frame in frames]
             segmentation = _beside_tracking(slam, segmenter, config, progress)
-            session = Session(segmentation or slam, loaded, stamps, progress, pacing, interrupt.requested)
+            view.tell = progress.event
+            tracker = view.watch(segmentation or slam, slam, sequence.calibration, config.get("system.mode"))
+            session = Session(tracker, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
             failure = _attempt(session.run)
             loaded.close()
@@ -82,12 +87,15 @@ def run_sequence(request: RunRequest) -> int:
             failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
             outcome.segmentation = segmentation
+            view.close()
+            outcome.view = view
             report = _write(outcome, failure)
     if failure is not None:
         raise failure
     if not report["tracked"] and not session.tally.interrupted:
         raise InputError(nothing_tracked(request.source, session.tally))
     print(summarise(report, request.out))
+    view.linger(request.out)
     return interrupt.exit_code
 
 

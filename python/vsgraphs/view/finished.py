@@ -1,0 +1,66 @@
+"""A finished run from its files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from vsgraphs.errors import InputError
+from vsgraphs.export.ply import read_ply
+from vsgraphs.scene_graph import KeyframeNode, SceneGraph, load_scene_graph, transform_points
+from vsgraphs.trajectory import read_tum_trajectory
+from vsgraphs.view.layers import bounds, layered_graph
+from vsgraphs.view.layout import layout
+from vsgraphs.view.scene import log_constants, log_landmarks, log_path, log_scene
+from vsgraphs.view.sinks import Sinks
+from vsgraphs.view.surfaces import upright
+
+FILES = ("scene_graph.json", "map.ply", "trajectory.txt")
+
+
+def recordings(folder: Path) -> list[Path]:
+    """What `run --record` left in the directory."""
+    return sorted(folder.glob("*.rrd"))
+
+
+def check_run(folder: Path) -> None:
+    """Raises InputError where the directory holds nothing that could be shown."""
+    if not folder.is_dir():
+        reason = "is a file" if folder.exists() else "does not exist"
+        raise InputError(f"{folder} {reason}; give the directory that `vsgraphs run --out` wrote")
+    if not recordings(folder) and not any((folder / name).is_file() for name in FILES):
+        raise InputError(f"{folder} holds no run: none of {', '.join(FILES)} is there")
+
+
+def show_run(folder: Path, sinks: Sinks) -> None:
+    """Logs the map, the trajectory and the scene graph of a run. Raises InputError: nothing there, or damaged."""
+    check_run(folder)
+    graph = SceneGraph()
+    if (folder / "scene_graph.json").is_file():
+        graph = load_scene_graph(folder / "scene_graph.json")
+    path = np.zeros((0, 3))
+    if (folder / "trajectory.txt").is_file():
+        trajectory = read_tum_trajectory(folder / "trajectory.txt")
+        path = trajectory.positions
+        if not graph.keyframes:  # a map without planes: something to look at
+            graph.keyframes = {
+                i: KeyframeNode(i, float(s), p)
+                for i, (s, p) in enumerate(zip(trajectory.timestamps, trajectory.poses, strict=True))
+            }
+    up = upright(graph)
+    low, high = bounds(graph, up)
+    top = max(
+        float(layer.places[:, 2].max(initial=high[2])) for layer in layered_graph(graph, up).layers.values()
+    )
+    sinks.arrange(layout(low, np.array([high[0], high[1], top]), images=False))
+    log_constants(sinks)
+    if (folder / "map.ply").is_file():
+        points, colours = read_ply(folder / "map.ply")
+        log_landmarks(sinks, transform_points(up, points), colours)
+    log_path(sinks, transform_points(up, path))
+    if graph.planes:
+        log_scene(sinks, graph, up)
+    for recording in recordings(folder):
+        for stream in sinks.streams:
+            stream.log_file_from_path(recording)
