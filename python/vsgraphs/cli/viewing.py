@@ -13,12 +13,12 @@ from vsgraphs.cli.interrupt import Interrupt
 
 if TYPE_CHECKING:
     from vsgraphs.datasets import Calibration
-    from vsgraphs.view import LiveView, Sinks, SinkRequest
+    from vsgraphs.view import LiveView, SinkRequest, Sinks
 
 
 @dataclass(frozen=True)
 class Showing:
-    """What the user asked for, as `vsgraphs.view.SinkRequest` (which would load numpy's world for nothing)."""
+    """What the user asked for; `request` loads what shows it."""
 
     view: bool = False
     record: Path | None = None
@@ -39,24 +39,30 @@ class Showing:
 
 
 class RunView:
-    """A run's view, or nothing where none was asked for. Opening raises InputError before anything is tracked."""
+    """A run's view, or nothing where none was asked for. Opening it raises InputError."""
 
-    def __init__(self, showing: Showing, tell: Callable[[str], None]) -> None:
+    def __init__(self, showing: Showing) -> None:
         self._sinks: Sinks | None = None
         self._live: LiveView | None = None
-        self.tell = tell
+        self._tell: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True)
         if showing.wanted:
             from vsgraphs.view import open_sinks
 
-            self._sinks = open_sinks(showing.request(), lambda line: self.tell(line))
+            self._sinks = open_sinks(showing.request(), self._say)
 
-    def watch(self, tracker: Any, slam: Any, camera: Calibration, mode: str) -> Any:
-        """The tracker, watched; the tracker itself where there is no view."""
+    def _say(self, line: str) -> None:
+        self._tell(line)  # which changes when there is a progress line
+
+    def watch(
+        self, tracker: Any, slam: Any, camera: Calibration, mode: str, tell: Callable[[str], None]
+    ) -> Any:
+        """The tracker, watched; the tracker itself where there is no view. tell: from now on."""
+        self._tell = tell
         if self._sinks is None:
             return tracker
         from vsgraphs.view import LiveView
 
-        self._live = LiveView(slam, camera, self._sinks, with_planes=mode != "slam", tell=self.tell)
+        self._live = LiveView(slam, camera, self._sinks, with_planes=mode != "slam", tell=self._say)
         return self._live.watch(tracker)
 
     def close(self) -> None:

@@ -125,8 +125,8 @@ def _matrices(path: Path) -> Array:
             numbers = []
         if len(numbers) != expected:
             raise InputError(
-                f"{path}:{number}: expected {expected} numbers (for each pose a line of three, then four rows "
-                "of four)"
+                f"{path}:{number}: expected {expected} numbers (for each pose a line of "
+                "three, then four rows of four)"
             )
         if place % 5:
             rows.append(numbers)

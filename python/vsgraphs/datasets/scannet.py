@@ -2,8 +2,9 @@
 
 Layout, as the data set's own SensReader writes it from a .sens file: `color/N.jpg`, `depth/N.png`
 (millimetres), `pose/N.txt` (4x4 world_from_camera, -inf where the camera was lost),
-`intrinsic/intrinsic_color.txt` and `intrinsic/intrinsic_depth.txt` (4x4). Colour is larger than depth (1296x968 to 640x480) and has a camera of
-its own at the same place: it is sampled at the depth image's pixels here, so both share the depth camera.
+`intrinsic/intrinsic_color.txt` and `intrinsic/intrinsic_depth.txt` (4x4). Colour is larger than depth
+(1296x968 to 640x480) and has a camera of its own at the same place: it is sampled at the depth image's pixels
+here, so both share the depth camera.
 There are no timestamps: frame number / 30.
 """
 

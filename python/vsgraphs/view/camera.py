@@ -15,8 +15,7 @@ _AGREES_M, _AGREES_SHARE = 0.05, 0.02  # how far a landmark may lie from the dep
 def depth_metres(depth: npt.NDArray[np.generic], camera: Calibration) -> npt.NDArray[np.float32]:
     """Depth image in metres, 0 where there is none; uint16 in the camera's units or float32 metres."""
     if depth.dtype != np.uint16:
-        metres = np.nan_to_num(depth.astype(np.float32), posinf=0.0, neginf=0.0)
-        return metres
+        return np.nan_to_num(depth.astype(np.float32), posinf=0.0, neginf=0.0)
     out = depth.astype(np.float32) / np.float32(camera.depth_scale)
     for value in camera.invalid_depth:
         out[depth == value] = 0.0
@@ -36,7 +35,8 @@ def distort(camera: Calibration, x: Array, y: Array) -> tuple[Array, Array]:
 def pixel_rays(camera: Calibration, stride: int) -> Array:
     """(h, w, 2) normalised image coordinates of every stride-th pixel, the lens taken out by fixed point."""
     u, v = np.meshgrid(np.arange(0, camera.width, stride), np.arange(0, camera.height, stride))
-    x0, y0 = (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy
+    x0 = ((u - camera.cx) / camera.fx).astype(np.float64)
+    y0 = ((v - camera.cy) / camera.fy).astype(np.float64)
     x, y = x0.copy(), y0.copy()
     if any(camera.distortion):
         for _ in range(8):
@@ -58,8 +58,9 @@ def back_project(
 def landmarks_in_view(
     camera: Calibration, depth_m: npt.NDArray[np.float32], camera_from_map: Array, points: Array
 ) -> tuple[Array, npt.NDArray[np.int64]]:
-    """(L, 2) pixels and (L,) indices of the (M, 3) map points that the frame sees: in the image, and as far as its
-    depth says, to 5 cm + 2 %.
+    """(L, 2) pixels and (L,) indices of the (M, 3) map points that the frame sees.
+
+    That is: in the image, and as far away as its depth says, to 5 cm + 2 %.
     """
     p = points @ camera_from_map[:3, :3].T + camera_from_map[:3, 3]
     index = np.flatnonzero(p[:, 2] > NEAR_M)

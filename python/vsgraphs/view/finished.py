@@ -10,8 +10,7 @@ from vsgraphs.errors import InputError
 from vsgraphs.export.ply import read_ply
 from vsgraphs.scene_graph import KeyframeNode, SceneGraph, load_scene_graph, transform_points
 from vsgraphs.trajectory import read_tum_trajectory
-from vsgraphs.view.layers import bounds, layered_graph
-from vsgraphs.view.layout import layout
+from vsgraphs.view.layout import gaze_at, layout
 from vsgraphs.view.scene import log_constants, log_landmarks, log_path, log_scene
 from vsgraphs.view.sinks import Sinks
 from vsgraphs.view.surfaces import upright
@@ -34,7 +33,7 @@ def check_run(folder: Path) -> None:
 
 
 def show_run(folder: Path, sinks: Sinks) -> None:
-    """Logs the map, the trajectory and the scene graph of a run. Raises InputError: nothing there, or damaged."""
+    """Logs map, trajectory and scene graph of a run. Raises InputError: nothing there, or damaged."""
     check_run(folder)
     graph = SceneGraph()
     if (folder / "scene_graph.json").is_file():
@@ -49,11 +48,7 @@ def show_run(folder: Path, sinks: Sinks) -> None:
                 for i, (s, p) in enumerate(zip(trajectory.timestamps, trajectory.poses, strict=True))
             }
     up = upright(graph)
-    low, high = bounds(graph, up)
-    top = max(
-        float(layer.places[:, 2].max(initial=high[2])) for layer in layered_graph(graph, up).layers.values()
-    )
-    sinks.arrange(layout(low, np.array([high[0], high[1], top]), images=False))
+    sinks.arrange(layout(gaze_at(graph, up), images=False))
     log_constants(sinks)
     if (folder / "map.ply").is_file():
         points, colours = read_ply(folder / "map.ply")

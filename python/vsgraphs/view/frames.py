@@ -86,7 +86,9 @@ class FrameLogger:
 
     def _log_landmarks(self, metres: npt.NDArray[np.float32], map_from_camera: Array, shown: MapView) -> None:
         rr = rerun()
-        pixels, index = landmarks_in_view(self._camera, metres, np.linalg.inv(map_from_camera), shown.points)
+        pixels, index = landmarks_in_view(
+            self._camera, metres, np.linalg.inv(map_from_camera).astype(np.float64), shown.points
+        )
         colours = np.full((len(index), 3), NO_PLANE, np.uint8)
         if shown.graph is not None:
             owners = shown.owners[index]

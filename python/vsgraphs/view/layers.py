@@ -16,6 +16,7 @@ from vsgraphs.view.surfaces import room_colour
 
 KEYFRAME_COLOUR = (150, 150, 160)
 FLOOR_COLOUR = (240, 240, 240)
+MAX_LINKED_KEYFRAMES = 40  # the links of more would be a carpet
 _SHOWN_EDGES = ("observes_plane", "bounds", "belongs_to", "door")
 
 
@@ -48,13 +49,13 @@ def layered_graph(graph: SceneGraph, up_from_graph: Array) -> LayeredGraph:
     low, high = bounds(graph, up_from_graph)
     reach = float(np.linalg.norm(high[:2] - low[:2]))
     out = LayeredGraph(size_m=min(max(0.01 * reach, 0.04), 0.3))
-    gap = min(max(0.14 * reach, 0.7), 3.0)
+    gap = min(max(0.09 * reach, 0.7), 3.0)
     walls = [plane for plane in graph.planes.values() if plane.role == "wall"]
     nodes = {
         "keyframe": [
             (k.id, k.world_from_camera[:3, 3], KEYFRAME_COLOUR, "") for k in graph.keyframes.values()
         ],
-        "plane": [(w.id, w.centroid, CLASS_COLOURS["wall"], f"wall {w.id}") for w in walls],
+        "plane": [(w.id, w.centroid, CLASS_COLOURS["wall"], "") for w in walls],
         "room": [(r.id, r.centroid, room_colour(r.id), r.name) for r in graph.rooms.values()],
         "floor": [(f.id, f.centroid, FLOOR_COLOUR, f"floor {f.id}") for f in graph.floors.values()],
     }
@@ -82,19 +83,35 @@ def layered_graph(graph: SceneGraph, up_from_graph: Array) -> LayeredGraph:
 def _add_edges(
     out: LayeredGraph, graph: SceneGraph, places: dict[str, Array], colours: dict[str, tuple[int, int, int]]
 ) -> None:
+    step = 1 + len(graph.keyframes) // MAX_LINKED_KEYFRAMES
+    drawn = {node_key("keyframe", k) for k in list(graph.keyframes)[::step]}
     for kind in _SHOWN_EDGES:
         ends, shades = [], []
         for edge in graph.edges:
-            if edge.kind == kind and edge.source in places and edge.target in places:
+            known = edge.source in places and edge.target in places
+            if edge.kind == kind and known and (kind != "observes_plane" or edge.source in drawn):
                 ends.append((places[edge.source], places[edge.target]))
                 shades.append(CLASS_COLOURS["door"] if kind == "door" else colours[edge.target])
         out.edges[kind] = np.array(ends).reshape(-1, 2, 3)
         out.edge_colours[kind] = np.array(shades, np.uint8).reshape(-1, 3)
 
 
+def wall_heading(graph: SceneGraph, up_from_graph: Array) -> float:
+    """Angle of the walls' common direction against x, radians in [-pi/4, pi/4).
+
+    The mean by area; walls a right angle apart count as one direction.
+    """
+    total = 0j
+    for plane in graph.planes_of("wall"):
+        normal = up_from_graph[:3, :3] @ plane.normal
+        total += plane.area_m2 * np.exp(4j * np.arctan2(normal[1], normal[0]))
+    return float(np.angle(total)) / 4 if total else 0.0
+
+
 def bounds(graph: SceneGraph, up_from_graph: Array) -> tuple[Array, Array]:
-    """(3,) least and (3,) greatest coordinates of walls, grounds and keyframes; a metre around the start where
-    there are none.
+    """(3,) least and (3,) greatest coordinates of walls, grounds and keyframes.
+
+    A metre around the start where there are none.
     """
     shown = [plane.extent.polygon for plane in graph.planes.values() if plane.role in ("wall", "ground")]
     cameras = [keyframe.world_from_camera[None, :3, 3] for keyframe in graph.keyframes.values()]

@@ -1,8 +1,8 @@
 """Showing a run while it goes on, on a thread of its own.
 
-The tracker hands each frame over and goes on at once: one frame waits, a newer one takes its place, and what was
-not shown is counted. The thread rests after each piece of work for three times as long as that took, so it takes
-at most a quarter of one core from the run.
+The tracker hands each frame over and goes on at once: one frame waits, a newer one takes its place, and what
+was not shown is counted. The thread rests after each piece of work for three times as long as that took: it
+takes at most a quarter of one core from the run.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ from __future__ import annotations
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,13 +24,13 @@ from vsgraphs.export.class_colours import plane_of_points
 from vsgraphs.scene_graph import SceneGraph, transform_points
 from vsgraphs.trajectory import Array
 from vsgraphs.view.frames import FrameLogger, MapView
-from vsgraphs.view.layers import bounds
-from vsgraphs.view.layout import layout
+from vsgraphs.view.layout import gaze_at, layout
 from vsgraphs.view.scene import log_constants, log_landmarks, log_path, log_scene
 from vsgraphs.view.sinks import Sinks
 from vsgraphs.view.surfaces import upright
 
 _REST = 3.0  # times the work
+_LOOK_S = 0.02  # at least between two looks for a new frame
 _SCENE_S = 1.0  # at least between two looks at the whole map
 _HAND_OVER_S = 0.0005  # a thread that waits for the interpreter gets it this soon (Python's default is 5 ms)
 
@@ -61,15 +63,16 @@ class LiveView:
         self._with_planes = with_planes
         self._tell = tell
         self._camera = camera
-        self._waiting: _Shot | None = None
-        self._change = threading.Condition()
-        self._closing = False
+        # No lock and no signal: those would make the tracker wait for this thread now and then.
+        self._waiting: deque[_Shot] = deque(maxlen=1)
+        self._closing = threading.Event()
         self._failed = False
         self._tail: list[tuple[float, Array]] = []
         self._map = MapView(np.zeros((0, 3)), np.zeros(0, np.int64), None, upright(SceneGraph()))
         self._map_from: Any = None
         self._next_scene_s = 0.0
-        self.offered = self.shown = self.dropped = 0
+        self._up_from_graph = np.eye(4)
+        self.offered = self.shown = 0
         self.offer_s = 0.0
         self.warnings: list[str] = []
         self._hand_over_s = sys.getswitchinterval()
@@ -82,22 +85,16 @@ class LiveView:
         return _Watched(tracker, self)
 
     def offer(self, rgb: Any, depth: Any, timestamp_s: float, result: Any) -> None:
-        """Hands a tracked frame over; takes some microseconds. One that still waits is dropped and counted."""
+        """Hands a tracked frame over, in microseconds. One that still waits is dropped and counted."""
         began = time.perf_counter()
-        shot = _Shot(rgb, depth, timestamp_s, result.world_from_camera)
-        with self._change:
-            self.offered += 1
-            if self._waiting is not None or self._failed:
-                self.dropped += 1
-            self._waiting = None if self._failed else shot
-            self._change.notify()
+        self.offered += 1
+        if not self._failed:
+            self._waiting.append(_Shot(rgb, depth, timestamp_s, result.world_from_camera))
         self.offer_s += time.perf_counter() - began
 
     def close(self) -> None:
         """After the run: shows the finished map, waits until it has arrived. Never raises."""
-        with self._change:
-            self._closing = True
-            self._change.notify()
+        self._closing.set()
         self._thread.join()
         sys.setswitchinterval(self._hand_over_s)
         if not self._failed:
@@ -107,24 +104,18 @@ class LiveView:
     def report(self) -> dict[str, Any]:
         """For run.json."""
         mean = 1000 * self.offer_s / self.offered if self.offered else 0.0
-        return {"shown": self.shown, "dropped": self.dropped, "mean_offer_ms": round(mean, 4)}
+        return {"shown": self.shown, "dropped": self.offered - self.shown, "mean_offer_ms": round(mean, 4)}
 
     def _work(self) -> None:
         self._guarded(self._begin)
         while True:
-            with self._change:
-                while self._waiting is None and not self._closing:
-                    self._change.wait()
-                if self._closing:
-                    return
-                shot, self._waiting = self._waiting, None
             began = time.monotonic()
-            self._guarded(lambda shot=shot: self._show(shot))
-            if not self._failed:
-                self.shown += 1
-            rest = _REST * (time.monotonic() - began)
-            with self._change:
-                self._change.wait_for(lambda: self._closing, timeout=rest)
+            if self._waiting:
+                self._guarded(partial(self._show, self._waiting.pop()))
+                self.shown += not self._failed
+            rest = max(_LOOK_S, _REST * (time.monotonic() - began))
+            if self._failed or self._closing.wait(timeout=rest):
+                return
 
     def _guarded(self, step: Callable[[], object]) -> None:
         """A viewer that fails costs a line, never the run."""
@@ -142,8 +133,7 @@ class LiveView:
         log_constants(self._sinks)
         self._frames = FrameLogger(self._sinks, self._camera)
 
-    def _show(self, shot: _Shot | None) -> None:
-        assert shot is not None
+    def _show(self, shot: _Shot) -> None:
         self._sinks.at(shot.timestamp_s)
         now = time.monotonic()
         if now >= self._next_scene_s:
@@ -165,8 +155,9 @@ class LiveView:
         graph, up_from_map = SceneGraph(), upright(SceneGraph())
         if self._with_planes:
             graph = SceneGraph.from_map(snapshot.scene_graph(), snapshot.keyframes())
-            up_from_map = upright(graph) @ graph.frame.world_from_map
-            log_scene(self._sinks, graph, upright(graph))
+            self._up_from_graph = upright(graph)
+            up_from_map = self._up_from_graph @ graph.frame.world_from_map
+            log_scene(self._sinks, graph, self._up_from_graph)
         owners = plane_of_points(graph, graph.points_from_map(points)) if self._with_planes else None
         self._map = MapView(
             points,
@@ -191,11 +182,8 @@ class LiveView:
         stamps, poses = self._slam.trajectory()
         if len(stamps):
             log_path(self._sinks, transform_points(self._map.up_from_map, poses[:, :3, 3]))
-        if (
-            self._sinks.window is None and self._map.graph is not None
-        ):  # nobody has turned the view by hand yet
-            low, high = bounds(self._map.graph, upright(self._map.graph))
-            self._sinks.arrange(layout(low, high + (0, 0, 0.5 * float(np.linalg.norm(high[:2] - low[:2])))))
+        if self._sinks.window is None:  # a window's owner may have turned the view by hand
+            self._sinks.arrange(layout(gaze_at(self._map.graph or SceneGraph(), self._up_from_graph)))
 
 
 class _Watched:

@@ -27,7 +27,8 @@ def require_free(port: int, purpose: str, option: str) -> None:
         raise InputError(f"{option} {port}: a port is a number from 1 to 65535")
     if not is_free(port):
         raise InputError(
-            f"port {port} ({purpose}) is taken by another program or may not be used; choose another with {option}"
+            f"port {port} ({purpose}) is taken by another program or may not be used; "
+            f"choose another with {option}"
         )
 
 

@@ -12,11 +12,20 @@ from vsgraphs.trajectory import Array
 from vsgraphs.view.extra import rerun
 from vsgraphs.view.layers import LayeredGraph, layered_graph
 from vsgraphs.view.sinks import Sinks
-from vsgraphs.view.surfaces import Mesh, door_outline, name_place, plane_mesh, room_colour, room_mesh
+from vsgraphs.view.surfaces import (
+    Mesh,
+    door_outline,
+    name_place,
+    plane_mesh,
+    room_colour,
+    room_mesh,
+    room_place,
+)
 
 PATH_COLOUR = (235, 70, 60)
 _PLANE_ALPHA = {"wall": 150, "ground": 110}
-_EDGE_ALPHA = {"observes_plane": 40, "bounds": 200, "belongs_to": 230, "door": 255}
+_EDGE_ALPHA = {"observes_plane": 60, "bounds": 200, "belongs_to": 230, "door": 255}
+_LIFTED = np.array([0.0, 0.0, 0.06])  # above the room's area, which lies above the ground
 _NAMED = ("wall", "ground", "door", "window")
 
 
@@ -43,37 +52,39 @@ def log_path(sinks: Sinks, positions: Array) -> None:
 
 def log_scene(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
     """Everything the scene graph holds, replacing what was shown of it before."""
-    for role in ROLES:
-        _log_planes(sinks, graph, role, up_from_graph)
+    sinks.renew("world/planes", [f"world/planes/{p.role}/{p.id}" for p in graph.planes.values()])
+    _log_planes(sinks, graph, up_from_graph)
     _log_rooms(sinks, graph, up_from_graph)
     _log_layers(sinks, layered_graph(graph, up_from_graph))
 
 
-def _log_planes(sinks: Sinks, graph: SceneGraph, role: str, up_from_graph: Array) -> None:
+def _log_planes(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
+    """Each plane under its own name, so that it can be picked and switched off."""
     rr = rerun()
-    planes = graph.planes_of(role)
-    _log_mesh(sinks, f"world/planes/{role}", plane_mesh(planes, up_from_graph), _PLANE_ALPHA.get(role, 90))
-    outlines = [
-        transform_points(up_from_graph, np.concatenate([polygon, polygon[:1]]))
-        for plane in planes
-        if len(polygon := plane.extent.polygon) and role in ("wall", "door", "window")
-    ]
-    sinks.log(
-        f"world/planes/{role}/outlines",
-        rr.LineStrips3D(outlines, colors=[CLASS_COLOURS[role]], radii=rr.Radius.ui_points(1.0)),
-    )
-    named = planes if role in _NAMED else []
-    places = np.array([name_place(plane, up_from_graph) for plane in named]).reshape(-1, 3)
-    names = [f"{role} {plane.id}" for plane in named]
-    _log_names(sinks, f"world/planes/{role}/names", places, names, CLASS_COLOURS[role])
+    for plane in graph.planes.values():
+        path = f"world/planes/{plane.role}/{plane.id}"
+        _log_mesh(sinks, path, plane_mesh([plane], up_from_graph), _PLANE_ALPHA.get(plane.role, 90))
+        if plane.role not in _NAMED or not len(plane.extent.polygon):
+            continue
+        outline = np.concatenate([plane.extent.polygon, plane.extent.polygon[:1]])
+        sinks.log(
+            f"{path}/outline",
+            rr.LineStrips3D(
+                [transform_points(up_from_graph, outline)],
+                colors=[CLASS_COLOURS[plane.role]],
+                radii=rr.Radius.ui_points(1.0 if plane.role != "ground" else 0.4),
+            ),
+        )
+        place = name_place(plane, up_from_graph)
+        _log_names(sinks, f"{path}/name", place[None], [f"{plane.role} {plane.id}"])
 
 
 def _log_rooms(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
     rr = rerun()
     rooms = list(graph.rooms.values())
-    _log_mesh(sinks, "world/rooms/areas", room_mesh(rooms, up_from_graph), 150)
+    _log_mesh(sinks, "world/rooms/areas", room_mesh(rooms, up_from_graph), 255)
     outlines = [
-        transform_points(up_from_graph, np.concatenate([room.polygon, room.polygon[:1]])) + (0, 0, 0.03)
+        transform_points(up_from_graph, np.concatenate([room.polygon, room.polygon[:1]])) + _LIFTED
         for room in rooms
     ]
     colours = [room_colour(room.id) for room in rooms]
@@ -81,9 +92,9 @@ def _log_rooms(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
         "world/rooms/outlines",
         rr.LineStrips3D(outlines, colors=colours or None, radii=rr.Radius.ui_points(2.5)),
     )
-    places = [transform_points(up_from_graph, room.polygon.mean(axis=0)[None])[0] for room in rooms]
+    places = [room_place(room, up_from_graph) for room in rooms]
     names = [f"{room.name}, {room.area_m2:.1f} m²{' (partial)' if room.partial else ''}" for room in rooms]
-    _log_names(sinks, "world/rooms/names", np.array(places).reshape(-1, 3), names, (255, 255, 255))
+    _log_names(sinks, "world/rooms/names", np.array(places).reshape(-1, 3), names)
     doors = [door_outline(door, up_from_graph) for door in graph.doors.values()]
     sinks.log(
         "world/doors",
@@ -97,14 +108,11 @@ def _log_layers(sinks: Sinks, layered: LayeredGraph) -> None:
     for kind, layer in layered.layers.items():
         sinks.log(
             f"world/graph/{kind}s",
-            rr.Points3D(
-                layer.places,
-                colors=layer.colours,
-                radii=layered.size_m * sizes[kind],
-                labels=layer.names if kind != "keyframe" else None,
-                show_labels=kind != "keyframe",
-            ),
+            rr.Points3D(layer.places, colors=layer.colours, radii=layered.size_m * sizes[kind]),
         )
+        if any(layer.names):
+            above = layer.places + np.array([0.0, 0.0, 1.5 * layered.size_m * sizes[kind]])
+            _log_names(sinks, f"world/graph/{kind}s/names", above, layer.names)
     for kind, ends in layered.edges.items():
         shades = np.full((len(ends), 4), _EDGE_ALPHA[kind], np.uint8)
         shades[:, :3] = layered.edge_colours[kind]
@@ -132,11 +140,11 @@ def _log_mesh(sinks: Sinks, path: str, mesh: Mesh, alpha: int) -> None:
     sinks.log(path, shown)
 
 
-def _log_names(
-    sinks: Sinks, path: str, places: Array, names: list[str], colour: tuple[int, int, int]
-) -> None:
+def _log_names(sinks: Sinks, path: str, places: Array, names: list[str]) -> None:
     rr = rerun()
     sinks.log(
         path,
-        rr.Points3D(places, labels=names, colors=[colour], radii=rr.Radius.ui_points(0.1), show_labels=True),
+        rr.Points3D(
+            places, labels=names, colors=[(255, 255, 255)], radii=rr.Radius.ui_points(0.1), show_labels=True
+        ),
     )

@@ -45,11 +45,18 @@ class Sinks:
     page: str | None = None
     record: Path | None = None
     tell: Callable[[str], None] = lambda _: None
+    _announced: dict[str, set[str]] = field(default_factory=dict)
 
     def log(self, path: str, shown: Any, *, static: bool = False) -> None:
         """Logs one thing everywhere."""
         for stream in self.streams:
             stream.log(path, shown, static=static)
+
+    def renew(self, under: str, paths: list[str]) -> None:
+        """Takes away what was announced last time below `under` and is not among `paths`."""
+        for gone in self._announced.get(under, set()) - set(paths):
+            self.log(gone, rerun().Clear(recursive=True))
+        self._announced[under] = set(paths)
 
     def at(self, timestamp_s: float) -> None:
         """What follows belongs to this time of the sequence."""

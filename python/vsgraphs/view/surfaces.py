@@ -62,14 +62,18 @@ def plane_mesh(planes: Iterable[PlaneNode], up_from_graph: Array) -> Mesh:
 
 
 def name_place(plane: PlaneNode, up_from_graph: Array) -> Array:
-    """(3,) where a plane's name stands: the middle of its upper rim, a wall's; its middle otherwise."""
-    middle = transform_points(up_from_graph, plane.centroid[None])[0]
+    """(3,) where a plane's name stands: a wall's upper rim, a corner of a ground, else the middle."""
+    if plane.role == "ground" and len(plane.extent.polygon):
+        corners = transform_points(up_from_graph, plane.extent.polygon)
+        nearest: Array = corners[np.argmin(corners[:, 0] + corners[:, 1])]
+        return nearest
+    middle: Array = transform_points(up_from_graph, plane.centroid[None])[0]
     if plane.role == "wall" and len(plane.extent.polygon):
         middle[2] = transform_points(up_from_graph, plane.extent.polygon)[:, 2].max()
     return middle
 
 
-def room_mesh(rooms: Iterable[RoomNode], up_from_graph: Array, above_m: float = 0.02) -> Mesh:
+def room_mesh(rooms: Iterable[RoomNode], up_from_graph: Array, above_m: float = 0.04) -> Mesh:
     """The rooms' areas, each in its colour, a little above the ground."""
     vertices, triangles, colours = (
         [np.zeros((0, 3))],
@@ -78,12 +82,26 @@ def room_mesh(rooms: Iterable[RoomNode], up_from_graph: Array, above_m: float = 
     )
     start = 0
     for room in rooms:
-        corners = transform_points(up_from_graph, room.polygon) + (0.0, 0.0, above_m)
+        corners = transform_points(up_from_graph, room.polygon) + np.array([0.0, 0.0, above_m])
         vertices.append(corners)
         triangles.append(start + triangulate(corners[:, :2]))
         colours.append(np.tile(np.array(room_colour(room.id), np.uint8), (len(corners), 1)))
         start += len(corners)
     return Mesh(np.concatenate(vertices), np.concatenate(triangles), np.concatenate(colours))
+
+
+def room_place(room: RoomNode, up_from_graph: Array) -> Array:
+    """(3,) a place well within the room, of an L too: the middle of its largest triangle."""
+    corners = transform_points(up_from_graph, room.polygon)
+    triangles = corners[triangulate(corners[:, :2])]
+    if not len(triangles):
+        middle: Array = transform_points(up_from_graph, room.centroid[None])[0]
+        return middle
+    sides = triangles[:, 1:] - triangles[:, :1]
+    place: Array = triangles[np.argmax(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1))].mean(
+        axis=0
+    )
+    return place
 
 
 def door_outline(door: DoorNode, up_from_graph: Array) -> Array:
@@ -99,8 +117,10 @@ def door_outline(door: DoorNode, up_from_graph: Array) -> Array:
 
 
 def triangulate(polygon: Array) -> npt.NDArray[np.int64]:
-    """(N, 2) corners of a simple polygon, either way round -> (T, 3) indices, by cutting ears (Meisters, "Polygons have
-    ears", American Mathematical Monthly 1975). Corners of a polygon that crosses itself are cut as they come.
+    """(N, 2) corners of a simple polygon, either way round -> (T, 3) indices.
+
+    By cutting ears (Meisters, "Polygons have ears", American Mathematical Monthly 1975). Corners of a polygon
+    that crosses itself are cut as they come.
     """
     order = list(range(len(polygon)))
     if _doubled_area(polygon) < 0:
