@@ -2,8 +2,8 @@
 
     benchmarks/view_cost.py SEQUENCE [--frames 300] [--runs 3] [--fps 30]
 
-The view records to a file. Frames are decoded before and fed at camera pace; a frame's time is that of track() and
-of handing it over, with every wait for the interpreter, which the view's thread shares.
+The view records to a file. Frames are decoded before and fed at camera pace; a frame's time is that of track()
+and of handing it over, with every wait for the interpreter, which the view's thread shares.
 """
 
 from __future__ import annotations
@@ -67,7 +67,8 @@ def main() -> None:
             times = np.array(run["times_ms"])
             mean.append(float(times.mean()))
             print(
-                f"{name:8} mean {times.mean():.2f} ms, median {np.median(times):.2f}, p95 {np.percentile(times, 95):.2f}"
+                f"{name:8} mean {times.mean():.2f} ms, median {np.median(times):.2f}, "
+                f"p95 {np.percentile(times, 95):.2f}"
                 f"  {json.dumps(run['view']) if run['view'] else ''}",
                 flush=True,
             )

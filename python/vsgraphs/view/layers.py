@@ -49,7 +49,7 @@ def layered_graph(graph: SceneGraph, up_from_graph: Array) -> LayeredGraph:
     low, high = bounds(graph, up_from_graph)
     reach = float(np.linalg.norm(high[:2] - low[:2]))
     out = LayeredGraph(size_m=min(max(0.01 * reach, 0.04), 0.3))
-    gap = min(max(0.09 * reach, 0.7), 3.0)
+    gap = min(max(0.09 * reach, 0.5), 3.0)
     walls = [plane for plane in graph.planes.values() if plane.role == "wall"]
     nodes = {
         "keyframe": [
@@ -109,13 +109,14 @@ def wall_heading(graph: SceneGraph, up_from_graph: Array) -> float:
 
 
 def bounds(graph: SceneGraph, up_from_graph: Array) -> tuple[Array, Array]:
-    """(3,) least and (3,) greatest coordinates of walls, grounds and keyframes.
+    """(3,) least and (3,) greatest coordinates of walls, grounds, rooms and keyframes.
 
     A metre around the start where there are none.
     """
     shown = [plane.extent.polygon for plane in graph.planes.values() if plane.role in ("wall", "ground")]
     cameras = [keyframe.world_from_camera[None, :3, 3] for keyframe in graph.keyframes.values()]
-    parts = [part for part in shown + cameras if len(part)]
+    rooms = [room.polygon for room in graph.rooms.values()]
+    parts = [part for part in shown + cameras + rooms if len(part)]
     if not parts:
         return np.full(3, -1.0), np.full(3, 1.0)
     points = transform_points(up_from_graph, np.concatenate(parts))

@@ -18,8 +18,6 @@ _MAP = (
     "- /world/camera/image/**",
     "+ /world/camera/image",
     "- /world/planes/ceiling/**",
-    "- /world/planes/undecided/**",
-    "- /world/planes/other/**",
 )
 
 
@@ -27,12 +25,13 @@ _MAP = (
 class Gaze:
     """What to look at: a box with z up, its sides turned by heading_rad against x.
 
-    The eye is `distance` times its diagonal away.
+    The eye is `distance` times its diagonal away, above the corner `side`.
     """
 
     middle: Array
     size: Array
     heading_rad: float = 0.0
+    side: tuple[int, int] = (-1, -1)  # on which side of the box the eye is, along and across
     distance: float = 0.78
 
 
@@ -55,18 +54,30 @@ def gaze_at(graph: SceneGraph, up_from_graph: Array) -> Gaze:
     if size[1] > size[0]:
         heading, size = heading + np.pi / 2, size[[1, 0, 2]]
     middle = transform_points(turn.T, (0.5 * (low + high))[None])[0]
-    return Gaze(middle, size, heading)
+    corners = [(x, y) for x in (-1, 1) for y in (-1, 1)]
+    side = max(corners, key=lambda corner: _wall_seen(graph, up_from_graph, _toward(heading, corner)))
+    return Gaze(middle, size, heading, side)
+
+
+def _toward(heading_rad: float, side: tuple[int, int]) -> Array:
+    """(3,) unit vector from the box to the eye."""
+    c, s = np.cos(heading_rad), np.sin(heading_rad)
+    x, y, z = 0.30 * side[0], 0.78 * side[1], 0.55
+    toward: Array = np.array([c * x - s * y, s * x + c * y, z]) / np.sqrt(x * x + y * y + z * z)
+    return toward
+
+
+def _wall_seen(graph: SceneGraph, up_from_graph: Array, toward: Array) -> float:
+    """How much wall turns its inside to the eye, m²: walls seen from one side only should stand behind."""
+    facing = [float(up_from_graph[:3, :3] @ w.normal @ toward) * w.area_m2 for w in graph.planes_of("wall")]
+    return round(sum(facing), 1)
 
 
 def layout(gaze: Gaze = AT_START, *, images: bool = True) -> Any:
     """A large view of the map; image and depth at its side."""
     b = blueprint()
-    c, s = np.cos(gaze.heading_rad), np.sin(gaze.heading_rad)
-    toward = np.array([-0.30, -0.78, 0.55])
-    toward = np.array([c * toward[0] - s * toward[1], s * toward[0] + c * toward[1], toward[2]])
-    position = gaze.middle + gaze.distance * float(np.linalg.norm(gaze.size)) * toward / np.linalg.norm(
-        toward
-    )
+    distance = gaze.distance * float(np.linalg.norm(gaze.size))
+    position = gaze.middle + distance * _toward(gaze.heading_rad, gaze.side)
     view = b.Spatial3DView(
         origin="/world",
         contents=list(_MAP),

@@ -23,7 +23,7 @@ from vsgraphs.view.surfaces import (
 )
 
 PATH_COLOUR = (235, 70, 60)
-_PLANE_ALPHA = {"wall": 150, "ground": 110}
+_PLANE_ALPHA = {"wall": 165, "ground": 110}
 _EDGE_ALPHA = {"observes_plane": 60, "bounds": 200, "belongs_to": 230, "door": 255}
 _LIFTED = np.array([0.0, 0.0, 0.06])  # above the room's area, which lies above the ground
 _NAMED = ("wall", "ground", "door", "window")

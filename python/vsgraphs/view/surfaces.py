@@ -23,6 +23,7 @@ ROOM_COLOURS = (
     (70, 176, 190),
     (190, 118, 84),
 )
+AREA_SHADE = 0.62  # of a room's colour on the ground: large areas in full colour outshine all else
 
 
 @dataclass
@@ -85,7 +86,8 @@ def room_mesh(rooms: Iterable[RoomNode], up_from_graph: Array, above_m: float = 
         corners = transform_points(up_from_graph, room.polygon) + np.array([0.0, 0.0, above_m])
         vertices.append(corners)
         triangles.append(start + triangulate(corners[:, :2]))
-        colours.append(np.tile(np.array(room_colour(room.id), np.uint8), (len(corners), 1)))
+        shade = (np.array(room_colour(room.id)) * AREA_SHADE).astype(np.uint8)
+        colours.append(np.tile(shade, (len(corners), 1)))
         start += len(corners)
     return Mesh(np.concatenate(vertices), np.concatenate(triangles), np.concatenate(colours))
 
