@@ -2,8 +2,8 @@
 
     benchmarks/view_cost.py SEQUENCE [--frames 300] [--runs 3] [--fps 30]
 
-The view records to a file. Frames are decoded before and fed at camera pace; a frame's time is that of track()
-and of handing it over, with every wait for the interpreter, which the view's thread shares.
+The view records to a file. Frames are decoded before and fed at camera pace; a frame's time is that of
+track() and of handing it over, with every wait for the interpreter, which the view's thread shares.
 """
 
 from __future__ import annotations

@@ -87,7 +87,8 @@ class RunView:
     @property
     def warnings(self) -> list[str]:
         """What went wrong with the view."""
-        return [] if self._live is None else self._live.warnings
+        kept = self._sinks.troubles if self._sinks is not None else []
+        return kept + (self._live.warnings if self._live is not None else [])
 
 
 def wait_with_page(page: str) -> None:

@@ -33,8 +33,17 @@ def check_run(folder: Path) -> None:
 
 
 def show_run(folder: Path, sinks: Sinks) -> None:
-    """Logs map, trajectory and scene graph of a run. Raises InputError: nothing there, or damaged."""
+    """Logs map, trajectory and scene graph of a run. Raises InputError: nothing there, or damaged.
+
+    What `run --record` left there is shown instead: it holds all of that and how it came about.
+    """
     check_run(folder)
+    recorded = recordings(folder)
+    if recorded:
+        sinks.tell(f"showing the recording {recorded[-1].name}")
+        for stream in sinks.streams:
+            stream.log_file_from_path(recorded[-1])
+        return
     graph = SceneGraph()
     if (folder / "scene_graph.json").is_file():
         graph = load_scene_graph(folder / "scene_graph.json")
@@ -56,6 +65,3 @@ def show_run(folder: Path, sinks: Sinks) -> None:
     log_path(sinks, transform_points(up, path))
     if graph.planes:
         log_scene(sinks, graph, up)
-    for recording in recordings(folder):
-        for stream in sinks.streams:
-            stream.log_file_from_path(recording)

@@ -32,7 +32,7 @@ class Gaze:
     size: Array
     heading_rad: float = 0.0
     side: tuple[int, int] = (-1, -1)  # on which side of the box the eye is, along and across
-    distance: float = 0.78
+    distance: float = 0.87
 
 
 AT_START = Gaze(np.array([1.5, 0.0, 1.5]), np.array([7.0, 6.0, 4.0]))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -19,7 +21,8 @@ APPLICATION = "vsgraphs"
 DEFAULT_PORT = 9876
 _SERVER_MEMORY = "1GiB"  # of what a browser that comes late still gets; the oldest goes first
 _FLUSH_S = 3.0
-_START_S = 15.0
+_START_S = 20.0
+_SETTLE_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,7 @@ class Sinks:
     page: str | None = None
     record: Path | None = None
     tell: Callable[[str], None] = lambda _: None
+    troubles: list[str] = field(default_factory=list)  # what was told and is worth keeping
     _announced: dict[str, set[str]] = field(default_factory=dict)
 
     def log(self, path: str, shown: Any, *, static: bool = False) -> None:
@@ -76,7 +80,11 @@ class Sinks:
         with contextlib.suppress(Exception):  # whatever it still holds has nowhere to go
             self.window.disconnect()
         self.window = self.window_port = None
-        self.tell("the viewer was closed; the run goes on without it")
+        self._trouble("the viewer was closed; the run goes on without it")
+
+    def _trouble(self, line: str) -> None:
+        self.troubles.append(line)
+        self.tell(line)
 
     def close(self) -> None:
         """Waits a few seconds until all that was logged has arrived."""
@@ -85,7 +93,7 @@ class Sinks:
             try:
                 stream.flush(timeout_sec=_FLUSH_S)
             except Exception as error:
-                self.tell(f"the viewer did not take everything: {' '.join(str(error).split())[:120]}")
+                self._trouble(f"the viewer did not take everything: {' '.join(str(error).split())[:120]}")
             if stream is not self.window and self.page is None:
                 stream.disconnect()
 
@@ -160,21 +168,32 @@ def _open_window(stream: Any, port: int, tell: Callable[[str], None]) -> None:
         if not ports.speaks_http2(port):
             ports.require_free(port, "the viewer's data", "--view-port")
         tell(f"showing in the viewer that is already open on port {port}")
-        stream.connect_grpc(f"rerun+http://127.0.0.1:{port}/proxy")
+        stream.connect_grpc(_address(port))
         return
     ports.require_free(port, "the viewer's data", "--view-port")
-    beside = Path(sys.executable).with_name("rerun")
-    name = {"executable_path": str(beside)} if beside.is_file() else {}
-    try:
-        rerun().spawn(port=port, connect=False, hide_welcome_screen=True, recording=stream, **name)
-    except Exception as error:
-        raise InputError(f"the viewer's window does not open: {_short(error)}; try --web") from None
+    viewer = subprocess.Popen(  # lives on after the run, and says nothing on our terminal
+        [sys.executable, "-m", "rerun", "--port", str(port), "--hide-welcome-screen"],
+        env={**os.environ, "RERUN_APP_ONLY": "true"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
     deadline = time.monotonic() + _START_S
-    while not ports.listens(port):
-        if time.monotonic() > deadline:
-            raise InputError("the viewer's window does not open (is the display usable?); try --web")
+    while not ports.listens(port) and viewer.poll() is None and time.monotonic() < deadline:
         time.sleep(0.1)
-    stream.connect_grpc(f"rerun+http://127.0.0.1:{port}/proxy")
+    time.sleep(_SETTLE_S)  # without a usable display it listens for a moment, then ends
+    if viewer.poll() is not None or not ports.listens(port):
+        with contextlib.suppress(OSError):
+            os.killpg(viewer.pid, signal.SIGTERM)  # its own group: the program behind it too
+        raise InputError(
+            "the viewer's window does not open (is the display usable?); --web shows it in a browser"
+        )
+    stream.connect_grpc(_address(port))
+
+
+def _address(port: int) -> str:
+    return f"rerun+http://127.0.0.1:{port}/proxy"
 
 
 def _short(error: Exception) -> str:
