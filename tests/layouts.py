@@ -144,3 +144,123 @@ def write_replica(folder: Path, frames: int = 3, *, params: bool = True) -> Path
         camera = {"w": 120, "h": 68, "fx": 60.0, "fy": 60.0, "cx": 59.5, "cy": 33.5, "scale": 6553.5}
         (folder.parent / "cam_params.json").write_text(json.dumps({"camera": camera}))
     return folder
+
+
+def _rows(matrix: np.ndarray) -> str:
+    return "\n".join(" ".join(f"{value:f}" for value in row) for row in matrix) + "\n"
+
+
+def write_scannet(folder: Path, frames: int = 4, *, colour_scale: int = 2) -> Path:
+    """ScanNet as SensReader exports it: colour twice as large, with its own camera; pose 2 was lost."""
+    scene = Scene(frames=frames, depth_scale=1000.0)
+    for index in range(frames):
+        large = np.repeat(np.repeat(scene.rgb(index), colour_scale, axis=0), colour_scale, axis=1)
+        save(large, folder / f"color/{index}.jpg")
+        save(scene.depth(index), folder / f"depth/{index}.png")
+        pose = np.full((4, 4), -np.inf) if index == 2 else scene.pose(index)
+        (folder / "pose").mkdir(exist_ok=True)
+        (folder / f"pose/{index}.txt").write_text(_rows(pose))
+    (folder / "intrinsic").mkdir()
+    for name, scale in (("depth", 1), ("color", colour_scale)):
+        camera = np.eye(4)
+        camera[0, 0] = camera[1, 1] = scene.focal_px * scale
+        camera[:2, 2] = (scene.width * scale - 1) / 2, (scene.height * scale - 1) / 2
+        (folder / f"intrinsic/intrinsic_{name}.txt").write_text(_rows(camera))
+        (folder / f"intrinsic/extrinsic_{name}.txt").write_text(_rows(np.eye(4)))
+    return folder
+
+
+# How the camera sits on OpenLORIS-Scene's robot in the fixture: through a frame between, as in the packages.
+BASE_FROM_MOUNT = np.array([[0.0, -1, 0, 0.2], [1, 0, 0, 0], [0, 0, 1, 0.9], [0, 0, 0, 1]])
+MOUNT_FROM_CAMERA = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0.1], [0, -1, 0, 0], [0, 0, 0, 1]])
+
+_LORIS_SENSORS = """%YAML:1.0
+---
+d400_color_optical_frame:
+   sensor_type: camera
+   sensor_name: d400_color_optical_frame
+   fps: 30
+   width: {width}
+   height: {height}
+   model: pinhole
+   intrinsics: !!opencv-matrix
+      rows: 1
+      cols: 4
+      dt: d
+      data: [ {focal}e+00, {cx}e+00,
+          {focal}e+00, {cy}e+00 ]
+   distortion_model: "radial-tangential"
+   distortion_coefficients: !!opencv-matrix
+      rows: 1
+      cols: 5
+      dt: d
+      data: [ 0., 0., 0., 0., 0. ]
+odometer:
+   sensor_type: odometer
+   sensor_name: odometer
+   fps: 0
+"""
+
+
+def opencv_transform(parent: str, child: str, matrix: np.ndarray) -> str:
+    data = ", ".join(f"{value:.16e}" for value in matrix.ravel())
+    return (
+        f"   -\n      parent_frame: {parent}\n      child_frame: {child}\n      matrix: !!opencv-matrix\n"
+        f"         rows: 4\n         cols: 4\n         dt: d\n         data: [ {data} ]\n"
+    )
+
+
+def write_openloris(folder: Path, frames: int = 4) -> Path:
+    """An OpenLORIS-Scene package: aligned depth some microseconds off colour, truth of the robot's base."""
+    scene = Scene(frames=frames, depth_scale=1000.0)
+    base_from_camera = BASE_FROM_MOUNT @ MOUNT_FROM_CAMERA
+    lists: dict[str, list[str]] = {"color": [], "aligned_depth": [], "depth": []}
+    truth = ["#Time px py pz qx qy qz qw\n"]
+    for index in range(frames):
+        stamp = 1560004885.446172 + index / 30
+        for name, late in (("color", 0.0), ("aligned_depth", -7e-6), ("depth", 0.004)):
+            file = f"{name}/{stamp + late:.6f}.png"
+            save(scene.rgb(index) if name == "color" else scene.depth(index), folder / file)
+            lists[name].append(f"{stamp + late:.6f} {file}\n")
+        base = scene.pose(index) @ np.linalg.inv(base_from_camera)
+        w = 0.5 * np.sqrt(1 + np.trace(base[:3, :3]))
+        x, y, z = (base[2, 1] - base[1, 2], base[0, 2] - base[2, 0], base[1, 0] - base[0, 1])
+        quaternion = np.array([x, y, z, 4 * w * w]) / (4 * w)
+        numbers = " ".join(f"{value:.9f}" for value in [*base[:3, 3], *quaternion])
+        truth.append(f"{stamp:.6f} {numbers}\n")
+    for name, lines in lists.items():
+        (folder / f"{name}.txt").write_text("#Time file\n" + "".join(lines))
+    (folder / "groundtruth.txt").write_text("".join(truth))
+    (folder / "sensors.yaml").write_text(
+        _LORIS_SENSORS.format(
+            width=scene.width,
+            height=scene.height,
+            focal=scene.focal_px,
+            cx=(scene.width - 1) / 2,
+            cy=(scene.height - 1) / 2,
+        )
+    )
+    (folder / "trans_matrix.yaml").write_text(
+        "%YAML:1.0\n---\ntrans_matrix:\n"
+        + opencv_transform("base_link", "mount", BASE_FROM_MOUNT)
+        + opencv_transform("mount", "d400_color_optical_frame", MOUNT_FROM_CAMERA)
+    )
+    return folder
+
+
+def write_redwood(folder: Path, frames: int = 4, *, colour: str = "color", camera: bool = True) -> Path:
+    """Redwood's indoor layout with Open3D's camera file; without one, images of the PrimeSense's size."""
+    small = Scene(frames=frames, depth_scale=1000.0)
+    scene = small if camera else Scene(frames, 640, 480, 525.0, 1000.0)
+    blocks = []
+    for index in range(frames):
+        save(scene.rgb(index), folder / f"{colour}/{index:05d}.jpg")
+        save(scene.depth(index), folder / f"depth/{index:05d}.png")
+        blocks.append(f"{index} {index} {index + 1}\n" + _rows(scene.pose(index)))
+    (folder / "trajectory.log").write_text("".join(blocks))
+    if camera:
+        focal, cx, cy = scene.focal_px, (scene.width - 1) / 2, (scene.height - 1) / 2
+        matrix = [focal, 0, 0, 0, focal, 0, cx, cy, 1]
+        values = {"width": scene.width, "height": scene.height, "intrinsic_matrix": matrix}
+        (folder / "camera_intrinsic.json").write_text(json.dumps(values))
+    return folder

@@ -7,15 +7,21 @@ from typing import Annotated
 
 import typer
 
+from vsgraphs.cli import completion
 from vsgraphs.cli.failures import set_debug, told
 
 app = typer.Typer(
     name="vsgraphs",
     help="RGB-D SLAM and 3D scene graphs.",
     no_args_is_help=True,
-    add_completion=False,
+    rich_markup_mode="markdown",
+    epilog="vsgraphs run FOLDER --out results, then vsgraphs view results. "
+    "vsgraphs COMMAND --help tells more.",
     pretty_exceptions_enable=False,
 )
+
+
+_VIEW_PORT = "The viewer's port (9876 unless given); a page for browsers is one above."
 
 
 def _print_version(wanted: bool) -> None:
@@ -36,19 +42,39 @@ def _options(
     set_debug(on=debug)
 
 
-@app.command()
+@app.command(
+    epilog="Example: vsgraphs run ~/rgbd_dataset_freiburg1_xyz --out results --view",
+)
 def run(
     source: Annotated[
-        Path, typer.Argument(help="Folder of the sequence (TUM, ICL-NUIM, 7-Scenes, Replica).")
+        Path,
+        typer.Argument(
+            metavar="FOLDER",
+            help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D.",
+        ),
     ],
     out: Annotated[Path, typer.Option("--out", "-o", help="Directory for the results.")],
     camera: Annotated[
-        str | None, typer.Option(help="camera.yaml or a known camera's name, if the folder has none.")
+        str | None,
+        typer.Option(
+            help="camera.yaml or a known camera's name, if the folder has none.",
+            autocompletion=completion.cameras,
+        ),
     ] = None,
     mode: Annotated[
-        str | None, typer.Option(help="slam: landmarks; bc: and walls, ground; full: and rooms (default).")
+        str | None,
+        typer.Option(
+            help="slam: landmarks; bc: and walls, ground; full: and rooms (default).",
+            autocompletion=completion.chosen_from("slam", "bc", "full"),
+        ),
     ] = None,
-    execution: Annotated[str | None, typer.Option(help="threaded (default) or serial.")] = None,
+    execution: Annotated[
+        str | None,
+        typer.Option(
+            help="threaded (default), or serial: the same bytes on every run.",
+            autocompletion=completion.chosen_from("threaded", "serial"),
+        ),
+    ] = None,
     realtime: Annotated[
         bool,
         typer.Option("--realtime", help="Pace frames by their timestamps; drop late ones like a camera."),
@@ -56,11 +82,18 @@ def run(
     max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")] = None,
     config: Annotated[Path | None, typer.Option(help="YAML file of options (see `vsgraphs config`).")] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set one option; repeatable.")
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set one option (see `vsgraphs config`); repeatable.",
+            autocompletion=completion.assignments,
+        ),
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
     segmenter: Annotated[
-        str, typer.Option(help="What tells surfaces apart: geometry, onnx:FILE, labels:DIR.")
+        str,
+        typer.Option(help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images)."),
     ] = "geometry",
     map_colours: Annotated[
         str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
@@ -69,10 +102,19 @@ def run(
         Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
     ] = None,
     replay: Annotated[Path | None, typer.Option(help="Repeat the run recorded in this file exactly.")] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Watch it: a window, or without a display a page for a browser.")
+    ] = False,
+    record: Annotated[
+        Path | None, typer.Option(help="Record what --view would show in this .rrd file.")
+    ] = None,
+    web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
+    view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
 ) -> None:
     """Track a camera through a recorded sequence and build the map."""
     with told():
         from vsgraphs.cli.run import RunRequest, run_sequence
+        from vsgraphs.cli.viewing import Showing
 
         shortcuts = {
             "system.mode": mode,
@@ -92,12 +134,16 @@ def run(
             config_file=config,
             assignments=list(set_ or []),
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
+            showing=Showing(view, record, view_port, web),
         )
         code = run_sequence(request)
     raise typer.Exit(code)
 
 
-@app.command("eval")
+@app.command(
+    "eval",
+    epilog="Example: vsgraphs eval results --groundtruth FOLDER/groundtruth.txt --plot error.png",
+)
 def evaluate(
     trajectory: Annotated[
         Path, typer.Argument(help="Trajectory in TUM format, or the directory a run left it in.")
@@ -105,7 +151,7 @@ def evaluate(
     groundtruth: Annotated[
         Path | None,
         typer.Option(
-            help="True trajectory (TUM, ICL-NUIM, Replica), or the sequence's folder. Required; with --scene "
+            help="True trajectory (any format), or the sequence's folder. Required; with --scene "
             "groundtruth.txt beside --truth unless given."
         ),
     ] = None,
@@ -142,9 +188,39 @@ def evaluate(
         compare(CompareRequest(trajectory, required_truth(groundtruth), sequence, max_dt, json_file, plot))
 
 
-@app.command()
+@app.command(epilog="Example: vsgraphs view results")
+def view(
+    run: Annotated[
+        Path, typer.Argument(metavar="RUN_DIR", help="Directory that `vsgraphs run --out` wrote.")
+    ],
+    web: Annotated[
+        bool, typer.Option("--web", help="A page for a browser also where a window could open.")
+    ] = False,
+    record: Annotated[
+        Path | None, typer.Option(help="Write what is shown to this .rrd file; no window opens.")
+    ] = None,
+    view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+) -> None:
+    """Open a finished run: map, walls, rooms and the graph above them."""
+    with told():
+        from vsgraphs.cli.viewing import Showing, view_run
+
+        view_run(run, Showing(record is None, record, view_port, web))
+
+
+@app.command(
+    epilog="Example: vsgraphs simulate two_rooms --out sequence --every 3, then "
+    "vsgraphs run sequence --out results",
+)
 def simulate(
-    plan: Annotated[str, typer.Argument(help="An included plan's name or a JSON file.")],
+    plan: Annotated[
+        str,
+        typer.Argument(
+            metavar="PLAN",
+            help="An included plan (one_room, two_rooms, three_rooms, ...) or a JSON file.",
+            autocompletion=completion.plans,
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the sequence; must be new or empty.")],
     seed: Annotated[int, typer.Option(help="Which draw of the sensor's noise.")] = 0,
     noise: Annotated[str, typer.Option(help="sensor: as a real camera sees it; clean: exact.")] = "sensor",
@@ -177,13 +253,39 @@ def simulate(
     raise typer.Exit(code)
 
 
-@app.command()
+@app.command(
+    epilog="Examples: vsgraphs config tracker; vsgraphs config explain orb.max_features; "
+    "vsgraphs config --yaml > mine.yaml",
+)
 def config(
-    search: Annotated[str | None, typer.Argument(help="Show only options whose key contains this.")] = None,
+    search: Annotated[
+        str | None,
+        typer.Argument(
+            help="Only options whose key contains this; or the word `explain`, then a key.",
+            autocompletion=completion.config_words,
+        ),
+    ] = None,
+    key: Annotated[
+        str | None,
+        typer.Argument(
+            help="After `explain`: the option to tell all about.", autocompletion=completion.option_keys
+        ),
+    ] = None,
     as_yaml: Annotated[bool, typer.Option("--yaml", help="Print a file that `run --config` reads.")] = False,
+    as_schema: Annotated[
+        bool, typer.Option("--schema", help="Print the JSON schema of such files, for editors.")
+    ] = False,
 ) -> None:
-    """Print every option: key, default, range, meaning."""
+    """Print every option: key, default, unit, range, meaning."""
     with told():
-        from vsgraphs.cli.show_config import show_config
+        from vsgraphs.cli.show_config import explain, show_config
+        from vsgraphs.errors import InputError
 
-        show_config(search, as_yaml=as_yaml)
+        if key is not None and search != "explain":
+            raise InputError(f"config {search} {key}: give one word to search for, or `explain KEY`")
+        if search == "explain":
+            if key is None:
+                raise InputError("config explain: which option? `vsgraphs config` lists all keys")
+            explain(key)
+            return
+        show_config(search, as_yaml=as_yaml, as_schema=as_schema)

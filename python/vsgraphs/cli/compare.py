@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from vsgraphs.datasets import CAMERAS, icl_nuim, open_sequence, replica
+from vsgraphs.datasets import CAMERAS, icl_nuim, open_sequence, openloris, redwood, replica
 from vsgraphs.errors import InputError
 from vsgraphs.evaluate import Evaluation, evaluate
 from vsgraphs.evaluate.errors import RelativeError, Statistics
@@ -63,9 +63,9 @@ def required_truth(groundtruth: Path | None) -> Path:
 
 
 def read_groundtruth(path: Path) -> Trajectory:
-    """The truth from a TUM, ICL-NUIM or Replica trajectory file, or from a sequence's folder."""
+    """The truth from a trajectory file of any format that has one, or from a sequence's folder."""
     if path.is_dir():
-        if (path / "groundtruth.txt").is_file():
+        if (path / "groundtruth.txt").is_file() and not openloris.detect(path):
             return read_tum_trajectory(path / "groundtruth.txt")
         truth = open_sequence(path, _ANY_CAMERA).groundtruth
         if truth is None:
@@ -75,6 +75,10 @@ def read_groundtruth(path: Path) -> Trajectory:
         raise InputError(f"ground truth {path} does not exist")
     if path.name.endswith(icl_nuim.TRUTH_SUFFIX):
         return icl_nuim.read_truth(path)
+    if path.name == openloris.TRUTH and openloris.detect(path.parent):
+        return openloris.read_truth(path)
+    if path.name == redwood.TRUTH:
+        return read_groundtruth(path.resolve().parent)
     return replica.read_truth(path) if _columns(path) == 16 else read_tum_trajectory(path)
 
 

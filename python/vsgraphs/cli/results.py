@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vsgraphs.cli.session import Tally
+    from vsgraphs.cli.viewing import RunView
     from vsgraphs.datasets import RecordedSequence
     from vsgraphs.segment import KeyframeSegmentation
 
@@ -45,6 +46,7 @@ class RunOutcome:
     map_colours: str = "image"  # of map.ply: image or class
     segmenter: str = "geometry"  # as the user named it
     segmentation: KeyframeSegmentation | None = None
+    view: RunView | None = None
 
 
 def write_results(outcome: RunOutcome) -> dict[str, Any]:
@@ -127,6 +129,7 @@ def run_report(
     """run.json: figures, then what is needed to repeat them."""
     statistics = outcome.slam.statistics()
     processed = outcome.tally.seen
+    shown = outcome.view.report() if outcome.view else None
     return {
         "frames": outcome.frames,
         "tracked": tracked,
@@ -147,6 +150,7 @@ def run_report(
             "backend": outcome.segmenter,
             **(outcome.segmentation.report() if outcome.segmentation else {}),
         },
+        **({"view": shown} if shown else {}),
         "source": {
             "name": outcome.sequence.name,
             "format": outcome.sequence.format,
@@ -160,6 +164,7 @@ def run_report(
             *outcome.sequence.warnings,
             *outcome.tally.warnings,
             *(outcome.segmentation.warnings if outcome.segmentation else ()),
+            *(outcome.view.warnings if outcome.view else ()),
             *statistics["warnings"],
         ],
     }

@@ -17,6 +17,7 @@ from vsgraphs.cli.progress import Progress
 from vsgraphs.cli.results import RunOutcome, summarise, write_results
 from vsgraphs.cli.session import Session, Tally
 from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
+from vsgraphs.cli.viewing import RunView, Showing
 from vsgraphs.datasets import RecordedSequence, open_sequence
 from vsgraphs.datasets.prefetch import Prefetcher
 from vsgraphs.errors import InputError
@@ -45,20 +46,19 @@ class RunRequest:
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
+    showing: Showing = field(default_factory=Showing)
 
 
 def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
     sequence = open_sequence(request.source, request.camera)
-    if request.map_colours not in MAP_COLOURS:
-        raise InputError(f"--map-colours {request.map_colours}: must be one of {', '.join(MAP_COLOURS)}")
+    _check_map_colours(request)
     segmenter = _make_segmenter(request.segmenter)
     prepare_directory(request.out)
     _check_schedule_out(request)
+    view = RunView(request.showing)
     frames = sequence.frames[: request.max_frames]
-    print(sequence.describe(), flush=True)
-    for line in sequence.warnings:
-        print(f"warning: {line}", file=sys.stderr, flush=True)
+    _announce(sequence)
     with Prefetcher(frames) as loaded:  # the first images decode while the core is loaded
         from vsgraphs.compiled import core
 
@@ -69,7 +69,9 @@ def run_sequence(request: RunRequest) -> int:
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
             stamps = [frame.timestamp for frame in frames]
             segmentation = _beside_tracking(slam, segmenter, config, progress)
-            session = Session(segmentation or slam, loaded, stamps, progress, pacing, interrupt.requested)
+            mode = config.get("system.mode")
+            tracker = view.watch(segmentation or slam, slam, sequence.calibration, mode, progress.event)
+            session = Session(tracker, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
             failure = _attempt(session.run)
             loaded.close()
@@ -81,14 +83,27 @@ def run_sequence(request: RunRequest) -> int:
             draining = _attempt(lambda: _drain(segmentation, limit_s, interrupt.requested))
             failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
-            outcome.segmentation = segmentation
+            outcome.segmentation, outcome.view = segmentation, view
             report = _write(outcome, failure)
     if failure is not None:
         raise failure
     if not report["tracked"] and not session.tally.interrupted:
         raise InputError(nothing_tracked(request.source, session.tally))
     print(summarise(report, request.out))
+    view.linger(request.out)
     return interrupt.exit_code
+
+
+def _check_map_colours(request: RunRequest) -> None:
+    if request.map_colours not in MAP_COLOURS:
+        raise InputError(f"--map-colours {request.map_colours}: must be one of {', '.join(MAP_COLOURS)}")
+
+
+def _announce(sequence: RecordedSequence) -> None:
+    """What was opened, and what had to be repaired."""
+    print(sequence.describe(), flush=True)
+    for line in sequence.warnings:
+        print(f"warning: {line}", file=sys.stderr, flush=True)
 
 
 def _check_schedule_out(request: RunRequest) -> None:
@@ -145,6 +160,8 @@ def _attempt(step: Callable[[], object]) -> Exception | None:
 
 
 def _write(outcome: RunOutcome, failure: Exception | None) -> dict[str, Any]:
+    if outcome.view is not None:
+        outcome.view.close()  # what came of it is written too
     try:
         return write_results(outcome)
     except Exception:

@@ -4,7 +4,7 @@ TUM: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats (calibration
 depth correction factors given there are already applied in the released images; freiburg3 is already
 undistorted). ICL-NUIM: https://www.doc.ic.ac.uk/~ahanda/VaFRIC/codes.html (fy is published as -480, see
 icl_nuim.py). 7-Scenes: Microsoft Research's page (depth camera). Replica: the renderings published with
-NICE-SLAM.
+NICE-SLAM. Redwood: the PrimeSense camera its page names (also Open3D's PrimeSenseDefault).
 """
 
 from __future__ import annotations
@@ -52,6 +52,9 @@ CAMERAS: dict[str, Calibration] = {
         depth_scale=6553.5,
         depth_noise=None,
         origin="replica (built in)",
+    ),
+    "redwood": Calibration(
+        640, 480, 525.0, 525.0, 319.5, 239.5, depth_scale=1000.0, origin="redwood (built in)"
     ),
 }
 

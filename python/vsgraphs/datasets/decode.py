@@ -8,6 +8,7 @@ instead.
 from __future__ import annotations
 
 import ctypes
+import math
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,52 @@ def load_rgb(path: Path, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
     for channel in range(3):
         rgb[:, :, channel] = lent[:, :, channel]
     return rgb
+
+
+def load_rgb_on_grid(
+    path: Path,
+    file_size: tuple[int, int],
+    size: tuple[int, int],
+    scale: tuple[float, float],
+    offset: tuple[float, float],
+) -> npt.NDArray[np.uint8]:
+    """Colour image of `file_size` (w, h) -> (H, W, 3) uint8 RGB of `size`, as `ColourGrid` says.
+
+    Each pixel is smoothed over its footprint; pixels that look past the rim repeat the last one that does
+    not. Raises FrameError as `load_rgb` does, also when nothing of the colour image is looked at.
+    """
+    image = _open(path, file_size)
+    if image.mode != "RGB":
+        image = image.convert("RGB")
+    spans = [_inside(size[k], file_size[k], scale[k], offset[k]) for k in (0, 1)]
+    (x0, x1), (y0, y1) = spans
+    if x0 >= x1 or y0 >= y1:
+        raise FrameError(f"{path}: the depth camera sees nothing of this image; wrong intrinsics?")
+    left, right = (scale[0] * (x - 0.5) + offset[0] + 0.5 for x in (x0, x1))
+    top, bottom = (scale[1] * (y - 0.5) + offset[1] + 0.5 for y in (y0, y1))
+    box = (max(left, 0.0), max(top, 0.0), min(right, file_size[0]), min(bottom, file_size[1]))
+    part = np.asarray(image.resize((x1 - x0, y1 - y0), Image.Resampling.BILINEAR, box=box))
+    rim = ((y0, size[1] - y1), (x0, size[0] - x1), (0, 0))
+    return np.ascontiguousarray(np.pad(part, rim, mode="edge"))
+
+
+def _inside(pixels: int, file_pixels: int, scale: float, offset: float) -> tuple[int, int]:
+    """First and one past the last pixel along an axis whose footprint lies in the file's image."""
+    slack = 1e-6  # of a pixel: footprints that end at the rim
+    first = math.ceil((-0.5 - offset) / scale + 0.5 - slack)
+    last = math.floor((file_pixels - 0.5 - offset) / scale + 0.5 + slack)
+    return max(first, 0), min(last, pixels)
+
+
+def image_size(path: Path) -> tuple[int, int]:
+    """(width, height) from an image's header. Raises FrameError: missing or not an image."""
+    try:
+        with Image.open(path, formats=_FORMATS) as image:
+            return image.size
+    except FileNotFoundError:
+        raise FrameError(f"{path} is missing") from None
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+        raise FrameError(f"{path} is damaged: {_short(error)}") from None
 
 
 def load_depth(path: Path, size: tuple[int, int]) -> npt.NDArray[np.uint16]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
-from vsgraphs.datasets import icl_nuim, replica, seven_scenes, tum
+from vsgraphs.datasets import icl_nuim, openloris, redwood, replica, scannet, seven_scenes, tum
 from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.sequence import RecordedSequence
 from vsgraphs.errors import InputError
@@ -27,7 +27,7 @@ class Format(Protocol):
 
 
 # In order of detection: an ICL-NUIM folder also looks like a TUM one.
-FORMATS: tuple[Format, ...] = (icl_nuim, seven_scenes, replica, tum)
+FORMATS: tuple[Format, ...] = (openloris, icl_nuim, seven_scenes, replica, tum, scannet, redwood)
 
 
 def open_sequence(path: str | Path, camera: str | Path | Calibration | None = None) -> RecordedSequence:

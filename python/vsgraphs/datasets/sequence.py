@@ -20,19 +20,41 @@ Depth = npt.NDArray[np.uint16]
 
 
 @dataclass(frozen=True)
+class ColourGrid:
+    """Where a colour image with a camera of its own is sampled, so that it fits the depth image.
+
+    size: of the colour file, pixels. Pixel (u, v) of the depth image looks at the colour image's
+    (scale[0] u + offset[0], scale[1] v + offset[1]); pixel centres at integers.
+    """
+
+    size: tuple[int, int]
+    scale: tuple[float, float]
+    offset: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class FrameRef:
-    """One frame on disk: its time in seconds and where its images are."""
+    """One frame on disk: its time in seconds and where its images are.
+
+    colour_grid: how colour gets the depth image's pixels; None where it has them already.
+    """
 
     timestamp: float
     rgb_path: Path
     depth_path: Path
     size: tuple[int, int]  # width, height the camera promises, pixels
+    colour_grid: ColourGrid | None = None
 
     def load(self) -> tuple[Rgb, Depth]:
         """Decodes rgb (H, W, 3) uint8 and depth (H, W) uint16 raw units; FrameError if either is unusable."""
-        from vsgraphs.datasets.decode import load_depth, load_rgb
+        from vsgraphs.datasets.decode import load_depth, load_rgb, load_rgb_on_grid
 
-        return load_rgb(self.rgb_path, self.size), load_depth(self.depth_path, self.size)
+        grid = self.colour_grid
+        if grid is None:
+            rgb = load_rgb(self.rgb_path, self.size)
+        else:
+            rgb = load_rgb_on_grid(self.rgb_path, grid.size, self.size, grid.scale, grid.offset)
+        return rgb, load_depth(self.depth_path, self.size)
 
 
 class Sequence(Protocol):
