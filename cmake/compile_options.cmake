@@ -20,6 +20,10 @@ endif()
 add_library(vsgraphs_options INTERFACE)
 target_compile_options(vsgraphs_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+if(NOT VSGRAPHS_CPU MATCHES "v3|v4|native")
+  # Without AVX the compiler warns of how it hands on 32-byte vectors; ours (core/vision/simd.h) stay in one file.
+  target_compile_options(vsgraphs_options INTERFACE -Wno-psabi)
+endif()
 if(VSGRAPHS_SANITIZE)
   target_compile_options(vsgraphs_options INTERFACE
     -fsanitize=${VSGRAPHS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all

@@ -9,7 +9,7 @@ install(TARGETS vsgraphs vsgraphs_abi EXPORT vsgraphs_targets COMPONENT developm
 install(EXPORT vsgraphs_targets NAMESPACE vsgraphs:: FILE vsgraphs-targets.cmake
         DESTINATION ${package} COMPONENT development)
 install(DIRECTORY core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vsgraphs COMPONENT development
-        FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE PATTERN "test_*.h" EXCLUDE)
+        FILES_MATCHING PATTERN "*.h" REGEX "test[^/]*\\.h$" EXCLUDE)
 
 # Before 1.0 a new minor version may change any interface.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/vsgraphs-config-version.cmake
