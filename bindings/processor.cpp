@@ -23,11 +23,18 @@ PyObject* levels(PyObject*, PyObject*) {
   return found;
 }
 
-PyMethodDef functions[] = {
-    {"levels", levels, METH_NOARGS, "The x86-64 levels above the first that processor and system run, lowest first."},
-    {nullptr, nullptr, 0, nullptr}};
-PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_processor", "What this machine's processor can run.", 0, functions,
-                          nullptr, nullptr, nullptr, nullptr};
+PyMethodDef functions[] = {{"levels", levels, METH_NOARGS,
+                            "The x86-64 levels above the first that processor and system run, lowest first."},
+                           {nullptr, nullptr, 0, nullptr}};
+PyModuleDef definition = {PyModuleDef_HEAD_INIT,
+                          "_processor",
+                          "What this machine's processor can run.",
+                          0,
+                          functions,
+                          nullptr,
+                          nullptr,
+                          nullptr,
+                          nullptr};
 
 }  // namespace
 

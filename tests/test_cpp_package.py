@@ -84,11 +84,14 @@ def test_what_is_installed(prefix: Path) -> None:
     assert {"LICENSE", "NOTICE"} <= {path.name for path in prefix.rglob("*")}
 
 
-@pytest.mark.parametrize(("asked", "found"), [("0.1", True), ("0.1.0 EXACT", True), ("0.2", False), ("1", False)])
+@pytest.mark.parametrize(
+    ("asked", "found"), [("0.1", True), ("0.1.0 EXACT", True), ("0.2", False), ("1", False)]
+)
 def test_the_version_is_checked(prefix: Path, tmp_path: Path, asked: str, found: bool) -> None:
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.25)\nproject(asks LANGUAGES CXX)\n"
-        f"find_package(vsgraphs {asked} QUIET)\nmessage(STATUS \"found=${{vsgraphs_FOUND}} ${{vsgraphs_VERSION}}\")\n"
+        f"find_package(vsgraphs {asked} QUIET)\n"
+        'message(STATUS "found=${vsgraphs_FOUND} ${vsgraphs_VERSION}")\n'
     )
     said = run("cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
     assert f"found={'1' if found else '0'} {vsgraphs.__version__ if found else ''}".strip() in said

@@ -19,7 +19,10 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 import check_wheel  # noqa: E402  (after the path)
 
-OLD, SSE, AVX2, AVX512 = [], ["x86-64-v2"], ["x86-64-v2", "x86-64-v3"], ["x86-64-v2", "x86-64-v3", "x86-64-v4"]
+OLD: list[str] = []
+SSE = ["x86-64-v2"]
+AVX2 = [*SSE, "x86-64-v3"]
+AVX512 = [*AVX2, "x86-64-v4"]
 
 
 def test_the_version_is_one() -> None:
@@ -80,7 +83,9 @@ def test_the_best_that_runs_is_taken(installed: list[str], runs: list[str], expe
         ([], AVX2, None, "not built"),
     ],
 )
-def test_what_does_not_run_is_said(installed: list[str], runs: list[str], wanted: str | None, said: str) -> None:
+def test_what_does_not_run_is_said(
+    installed: list[str], runs: list[str], wanted: str | None, said: str
+) -> None:
     with pytest.raises(ImportError, match=said) as caught:
         choose_level(installed, runs, wanted)
     assert "\n" not in str(caught.value)
@@ -116,7 +121,9 @@ def test_the_program_refuses_an_old_processor_at_once(tmp_path: Path) -> None:
         "sys.argv = ['vsgraphs', 'run', 'nowhere', '--out', 'out']\n"
         "try:\n    main()\nfinally:\n    assert 'numpy' not in sys.modules"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=False
+    )
     assert done.returncode == 2
     assert done.stderr.startswith("error: this processor is too old: ")
     assert done.stderr.count("\n") == 1

@@ -18,12 +18,14 @@ SIZE_LIMIT_MB = 15
 OURS = "Apache-2.0"
 # What is compiled into each module beside our own code.
 COMPILED_IN = {
-    r"vsgraphs/_compiled/[\w.-]+/_core\.[\w.-]+\.so": f"{OURS}; Eigen MPL-2.0; nanobind BSD-3-Clause; robin-map MIT",
+    r"vsgraphs/_compiled/[\w.-]+/_core\.[\w.-]+\.so": (
+        f"{OURS}; Eigen MPL-2.0; nanobind BSD-3-Clause; robin-map MIT"
+    ),
     r"vsgraphs/_processor\.[\w.-]+\.so": OURS,
 }
 PLAIN = r"vsgraphs/[\w/.]+\.(py|pyi|json|typed)"
 LICENCES = {"LICENSE", "NOTICE", "Eigen-MPL-2.0.txt", "nanobind-BSD-3-Clause.txt", "robin-map-MIT.txt"}
-# Of the system, named by manylinux, not in the wheel: glibc, and GCC's run-time libraries with their exception.
+# The system's, promised by manylinux, not in the wheel: glibc, and GCC's run-time libraries (with exception).
 FROM_THE_SYSTEM = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "libstdc++.so.6", "ld-linux-x86-64.so.2"}
 # Linked by the tests' oracles; their names would show in a module that has them inside.
 NEVER_INSIDE = (b"cholmod", b"ceres", b"suitesparse", b"opencv")
@@ -38,7 +40,7 @@ def licence_of(name: str) -> str | None:
 
 
 def needed_libraries(elf: bytes) -> list[str]:
-    """The shared libraries a 64-bit little-endian ELF file asks for (DT_NEEDED). Raises ValueError for others."""
+    """The shared libraries a 64-bit little-endian ELF file asks for. Raises ValueError for other files."""
     if elf[:6] != b"\x7fELF\x02\x01":
         raise ValueError("no 64-bit ELF file")
     (table,) = struct.unpack_from("<Q", elf, 40)

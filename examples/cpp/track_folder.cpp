@@ -12,8 +12,8 @@ namespace {
 void print_rooms(const vsgraphs::FoundStructure& structure) {
   std::printf("%zu rooms\n", structure.rooms.size());
   for (const vsgraphs::FoundRoom& room : structure.rooms)
-    std::printf("room %u: %.1f m2, %zu walls, %zu neighbours%s\n", room.number, room.area_m2, room.walls.size(),
-                room.neighbours.size(), room.partial ? ", seen in part" : "");
+    std::printf("room %u: %.1f m2, %zu walls, %zu neighbours%s\n", room.number, room.area_m2,
+                room.walls.size(), room.neighbours.size(), room.partial ? ", seen in part" : "");
 }
 
 void track(const TumFolder& folder) {

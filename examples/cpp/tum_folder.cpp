@@ -87,7 +87,9 @@ std::vector<FramePaths> read_pairs(const fs::path& folder) {
   std::size_t next = 0;
   for (const auto& row : rows_of(folder / "rgb.txt", 2)) {
     const double stamp = number(row[0], folder / "rgb.txt");
-    const auto gap = [&](std::size_t i) { return std::abs(number(depths[i][0], folder / "depth.txt") - stamp); };
+    const auto gap = [&](std::size_t i) {
+      return std::abs(number(depths[i][0], folder / "depth.txt") - stamp);
+    };
     while (next + 1 < depths.size() && gap(next + 1) <= gap(next)) ++next;
     if (next < depths.size() && gap(next) <= max_gap_s)
       frames.push_back({stamp, folder / row[1], folder / depths[next][1]});

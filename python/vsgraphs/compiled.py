@@ -1,7 +1,7 @@
 """The door to the compiled module: takes the fastest build of it that this processor runs.
 
-A package holds the core compiled for one or for several x86-64 levels, in `_compiled/LEVEL/`. The processor is asked
-first, so that one too old for all of them gets a sentence and not SIGILL.
+A package holds the core compiled for one or for several x86-64 levels, in `_compiled/LEVEL/`. The processor
+is asked first, so that one too old for all of them gets a sentence and not SIGILL.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-LEVEL_VARIABLE = "VSGRAPHS_CPU"  # takes another installed level than the best, e.g. to repeat an older machine's run
+# Takes another installed level than the best, for example to repeat a run of an older machine.
+LEVEL_VARIABLE = "VSGRAPHS_CPU"
 _FOLDER = Path(__file__).parent / "_compiled"
 _MODULE = "vsgraphs._core"
 # Best first. Anything else ("native", "generic") was built for one machine, and is not asked about.
@@ -23,7 +24,8 @@ def core() -> Any:
     """The module `vsgraphs._core`. Raises ImportError with the reason when it cannot run here."""
     import vsgraphs
 
-    folder = str(_FOLDER / choose_level(installed_levels(), processor_levels(), os.environ.get(LEVEL_VARIABLE)))
+    wanted = os.environ.get(LEVEL_VARIABLE)
+    folder = str(_FOLDER / choose_level(installed_levels(), processor_levels(), wanted))
     if folder not in vsgraphs.__path__:
         vsgraphs.__path__.append(folder)
     return importlib.import_module(_MODULE)
@@ -42,7 +44,7 @@ def installed_levels() -> list[str]:
 
 
 def processor_levels() -> list[str]:
-    """The x86-64 levels this processor and its system run; empty on other processors, and on the first x86-64."""
+    """The x86-64 levels that processor and system run; empty on other processors and the first x86-64."""
     try:
         processor = importlib.import_module("vsgraphs._processor")
     except ModuleNotFoundError:
@@ -65,16 +67,16 @@ def choose_level(installed: Collection[str], runs: Collection[str], wanted: str 
     if wanted:
         if wanted not in usable:
             raise ImportError(
-                f"{LEVEL_VARIABLE}={wanted}: installed are {', '.join(sorted(installed))}, of which this processor "
-                f"runs {', '.join(sorted(usable)) or 'none'}; unset it to take the best",
+                f"{LEVEL_VARIABLE}={wanted}: installed are {', '.join(sorted(installed))}, of which this "
+                f"processor runs {', '.join(sorted(usable)) or 'none'}; unset it to take the best",
                 name=_MODULE,
             )
         return wanted
     if not usable:
         raise ImportError(
-            f"this processor is too old: vsgraphs is built here for {' and '.join(sorted(installed))} (x86-64-v2: "
-            "from about 2009, SSE4.2; x86-64-v3: from about 2013, AVX2); build it for this machine with "
-            "`pip install --no-binary vsgraphs -C cmake.define.VSGRAPHS_CPU=native vsgraphs`",
+            f"this processor is too old: vsgraphs is built here for {' and '.join(sorted(installed))} "
+            "(x86-64-v2: from about 2009, SSE4.2; x86-64-v3: from about 2013, AVX2); build it for this "
+            "machine with `pip install --no-binary vsgraphs -C cmake.define.VSGRAPHS_CPU=native vsgraphs`",
             name=_MODULE,
         )
     return usable[0]
