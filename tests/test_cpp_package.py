@@ -84,8 +84,17 @@ def test_what_is_installed(prefix: Path) -> None:
     assert {"LICENSE", "NOTICE"} <= {path.name for path in prefix.rglob("*")}
 
 
+MAJOR, MINOR, *_ = (int(number) for number in vsgraphs.__version__.split("."))
+
+
 @pytest.mark.parametrize(
-    ("asked", "found"), [("0.1", True), ("0.1.0 EXACT", True), ("0.2", False), ("1", False)]
+    ("asked", "found"),
+    [
+        (f"{MAJOR}.{MINOR}", True),
+        (f"{vsgraphs.__version__} EXACT", True),
+        (f"{MAJOR}.{MINOR + 1}", False),
+        (f"{MAJOR + 1}", False),
+    ],
 )
 def test_the_version_is_checked(prefix: Path, tmp_path: Path, asked: str, found: bool) -> None:
     (tmp_path / "CMakeLists.txt").write_text(

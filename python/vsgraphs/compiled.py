@@ -76,7 +76,7 @@ def choose_level(installed: Collection[str], runs: Collection[str], wanted: str 
         raise ImportError(
             f"this processor is too old: vsgraphs is built here for {' and '.join(sorted(installed))} "
             "(x86-64-v2: from about 2009, SSE4.2; x86-64-v3: from about 2013, AVX2); build it for this "
-            "machine with `pip install --no-binary vsgraphs -C cmake.define.VSGRAPHS_CPU=native vsgraphs`",
+            "machine, from its sources: `pip install --config-settings=cmake.define.VSGRAPHS_CPU=native .`",
             name=_MODULE,
         )
     return usable[0]
