@@ -5,7 +5,7 @@ SHELL := /bin/bash
 MAKEFLAGS += --no-print-directory
 BIN := .venv/bin
 
-.PHONY: help demo test build lint format layers asan tsan tidy bench clean
+.PHONY: help demo test build wheel lint format layers asan tsan tidy bench clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 10
@@ -22,6 +22,10 @@ test: ## install what is missing, build, then every check and test
 
 build: ## the package with its development tools into .venv
 	@scripts/setup test lint
+
+wheel: ## a self-contained wheel for every x86-64 processor since 2009, and the sdist, in dist/
+	@scripts/setup wheel
+	@scripts/wheel
 
 lint: ## formatters, linters, type check, layer check
 	@scripts/setup lint

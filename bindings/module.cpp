@@ -3,6 +3,7 @@
 #include "bindings/bind.h"
 #include "build_info.h"
 #include "core/base/check.h"
+#include "core/system/version.h"
 
 NB_MODULE(_core, m) {
   m.doc() = "The compiled core of vsgraphs. Use it through the package `vsgraphs`.";
@@ -22,10 +23,12 @@ NB_MODULE(_core, m) {
         nanobind::dict info;
         info["commit"] = VSGRAPHS_COMMIT;
         info["compiler"] = VSGRAPHS_COMPILER;
+        info["core"] = vsgraphs::version();
+        info["processor_level"] = vsgraphs::processor_level();
         return info;
       },
       nanobind::sig("def build_info() -> dict[str, str]"),
-      "What the module was built from: commit and compiler.");
+      "What the module was built from and for: commit, compiler, the core's version, the processor's level.");
   vsgraphs::bind_camera(m);
   vsgraphs::bind_config(m);
   vsgraphs::bind_slam(m);

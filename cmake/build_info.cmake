@@ -2,7 +2,9 @@
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C ${SOURCE} rev-parse --short=12 HEAD
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
-if(failed)
+execute_process(COMMAND git -C ${SOURCE} rev-parse --show-prefix
+                OUTPUT_VARIABLE below OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(failed OR below)  # below: unpacked inside another project's checkout, whose commit says nothing
   set(commit "unknown")
 else()
   execute_process(COMMAND git -C ${SOURCE} status --porcelain --untracked-files=no

@@ -12,7 +12,6 @@ import pytest
 from vsgraphs.cli import measures
 from vsgraphs.cli.progress import Progress
 from vsgraphs.cli.session import Tally
-from vsgraphs.compiled import check_processor
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import prepare_directory, write_atomically
 from vsgraphs.export.ply import format_ply
@@ -114,17 +113,3 @@ def test_measures() -> None:
     sum(i * i for i in range(300_000))
     assert measures.cpu_s() > before
     assert measures.peak_memory_mb() > 10
-
-
-def test_old_processors_get_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    info = tmp_path / "cpuinfo"
-    info.write_text("processor\t: 0\nflags\t\t: fpu sse4_2 popcnt avx movbe abm\n")
-    with pytest.raises(ImportError, match=r"lacks avx2, bmi1, bmi2, fma, f16c: .* x86-64-v3"):
-        check_processor(info, "x86_64")
-    check_processor(info, "aarch64")
-    check_processor(tmp_path / "hidden", "x86_64")
-    info.write_text("flags : fpu avx2 bmi1 bmi2 fma f16c movbe abm\n")
-    check_processor(info, "x86_64")
-    info.write_text("flags : fpu\n")
-    monkeypatch.setenv("VSGRAPHS_SKIP_CPU_CHECK", "1")
-    check_processor(info, "x86_64")

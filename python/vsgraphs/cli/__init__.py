@@ -14,6 +14,9 @@ def main() -> None:
     from vsgraphs.cli.failures import told
 
     with told():
+        from vsgraphs.compiled import check_processor
+
+        check_processor()  # before numpy, which an old processor does not run either, and says so less kindly
         from vsgraphs.cli.app import app
 
         app()

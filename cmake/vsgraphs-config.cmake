@@ -1,0 +1,4 @@
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(Eigen3 3.4 NO_MODULE)
+include(${CMAKE_CURRENT_LIST_DIR}/vsgraphs-targets.cmake)
