@@ -7,6 +7,7 @@
 
 #include "bindings/arrays.h"
 #include "bindings/bind.h"
+#include "bindings/markers.h"
 #include "core/map/map.h"
 
 namespace nb = nanobind;
@@ -154,6 +155,7 @@ nb::dict scene_graph_of(const Map& map) {
   map.planes().for_each(
       [&](PlaneId id, const MappedPlane& plane) { planes.append(plane_of(map, id, plane)); });
   graph["planes"] = planes;
+  graph["markers"] = map.markers().empty() ? nb::object(nb::none()) : nb::object(markers_of(map));
   if (map.structure().sought) add_structure(map.structure(), graph);
   return graph;
 }

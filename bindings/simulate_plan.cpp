@@ -111,6 +111,14 @@ void bind_things(nb::module_& m) {
       .def_rw("height", &PosterPlan::height)
       .def_rw("kind", &PosterPlan::kind)
       .def_rw("seed", &PosterPlan::seed);
+  nb::class_<MarkerPlan>(m, "MarkerPlan")
+      .def(nb::init<>())
+      .def_rw("id", &MarkerPlan::id)
+      .def_rw("room", &MarkerPlan::room)
+      .def_rw("wall", &MarkerPlan::wall)
+      .def_rw("along", &MarkerPlan::along)
+      .def_rw("z", &MarkerPlan::z)
+      .def_rw("size", &MarkerPlan::size);
   auto box = nb::class_<BoxPlan>(m, "BoxPlan").def(nb::init<>());
   box.def_rw("kind", &BoxPlan::kind)
       .def_rw("room", &BoxPlan::room)
@@ -170,6 +178,7 @@ void bind_plan(nb::module_& m) {
       .def_rw("doors", &Plan::doors)
       .def_rw("windows", &Plan::windows)
       .def_rw("posters", &Plan::posters)
+      .def_rw("markers", &Plan::markers)
       .def_rw("boxes", &Plan::boxes)
       .def_rw("stairs", &Plan::stairs)
       .def_rw("path", &Plan::path);

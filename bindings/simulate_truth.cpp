@@ -103,6 +103,21 @@ nb::dict window_truth(const Scene& scene, std::size_t index) {
   return d;
 }
 
+nb::dict marker_truth(const Scene& scene, std::size_t index) {
+  const MarkerGeometry& marker = scene.markers[index];
+  const Eigen::Matrix4d pose = marker.world_from_marker.matrix();
+  nb::list rows;
+  for (int r = 0; r < 4; ++r) rows.append(numbers({pose(r, 0), pose(r, 1), pose(r, 2), pose(r, 3)}));
+  nb::dict d;
+  d["id"] = scene.plan.markers[index].id;
+  d["dictionary"] = "4x4_50";
+  d["inst"] = marker.instance;
+  d["room"] = item(scene.plan.rooms, marker.room).id;
+  d["size_m"] = scene.plan.markers[index].size;
+  d["world_from_marker"] = rows;
+  return d;
+}
+
 nb::dict instance_truth(const Scene& scene, std::size_t index) {
   const Instance& instance = scene.instances[index];
   nb::dict d;
@@ -143,6 +158,9 @@ nb::dict scene_truth(const Scene& scene, const ObservationCounter& seen) {
   d["ceilings"] = listed(scene.rooms.size(), [&](std::size_t i) { return level_plane(scene, i, true); });
   d["doors"] = listed(scene.doors.size(), [&](std::size_t i) { return door_truth(scene, i); });
   d["windows"] = listed(scene.windows.size(), [&](std::size_t i) { return window_truth(scene, i); });
+  // Only where there are any: plans without markers keep their files to the byte.
+  if (!scene.markers.empty())
+    d["markers"] = listed(scene.markers.size(), [&](std::size_t i) { return marker_truth(scene, i); });
   d["instances"] = listed(scene.instances.size(), [&](std::size_t i) { return instance_truth(scene, i); });
   nb::dict classes;
   for (std::size_t i = 0; i < scene_class_names.size(); ++i)

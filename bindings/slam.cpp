@@ -8,6 +8,7 @@
 
 #include "bindings/arrays.h"
 #include "bindings/bind.h"
+#include "bindings/markers.h"
 #include "core/base/check.h"
 
 namespace nb = nanobind;
@@ -224,6 +225,35 @@ void bind_slam(nb::module_& m) {
           "  confidence: (h, w) float32, 0 to 1; None: 1 everywhere.\n"
           "  instances: (h, w) uint16, pieces of one thing share a number, 0: none.\n\n"
           "Raises InputError for wrong shapes, types or values.")
+      .def(
+          "add_markers",
+          [](Slam& slam, std::int64_t frame_index, const Numbers& ids, const Reals& sizes, const Reals& poses,
+             const Reals& covariances) {
+            MarkerDetections detections = marker_detections_of(ids, sizes, poses, covariances);
+            const nb::gil_scoped_release release;
+            slam.add_markers(frame_index, std::move(detections));
+          },
+          "frame_index"_a, "ids"_a, "size_m"_a, "camera_from_marker"_a, "covariance"_a,
+          nb::sig("def add_markers(self, frame_index: int, ids: numpy.typing.NDArray[numpy.int64], size_m: "
+                  "numpy.typing.NDArray[numpy.float64], camera_from_marker: "
+                  "numpy.typing.NDArray[numpy.float64], "
+                  "covariance: numpy.typing.NDArray[numpy.float64]) -> None"),
+          "Says which fiducial markers an earlier frame's image shows, in place of what was said of it "
+          "before; "
+          "may come late and from any thread.\n\n"
+          "Args:\n"
+          "  frame_index: the frame's TrackResult.index. Frames that are no keyframes: no effect.\n"
+          "  ids: (N,) int64, the printed numbers; one that comes twice hangs in two places.\n"
+          "  size_m: (N,) float64, sides of the black squares.\n"
+          "  camera_from_marker: (N, 4, 4) float64; a marker's origin is in its middle, x to the right of "
+          "who "
+          "reads\n"
+          "    it, y up, z out of the paper; the camera's x right, y down, z forward.\n"
+          "  covariance: (N, 6, 6) float64 of (translation m, rotation rad), small moves applied on the "
+          "right "
+          "of\n"
+          "    camera_from_marker.\n\n"
+          "Raises InputError for wrong shapes and values.")
       .def(
           "snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
           "The newest map. Cheap, from any thread.")

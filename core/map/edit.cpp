@@ -164,6 +164,26 @@ class Fnv1a {
     for (const Eigen::Vector3d& node : op.rooms) matrix(node);
     for (const Eigen::Vector3d& node : op.floors) matrix(node);
   }
+  void operator()(const AddMarker& op) {
+    word(op.id.number);
+    number(op.marker.size_m);
+    pose(op.marker.world_from_marker);
+  }
+  void operator()(const RemoveMarker& op) { word(op.id.number); }
+  void operator()(const AddMarkerObservation& op) {
+    word(op.id.number);
+    id(op.observation.keyframe);
+    pose(op.observation.camera_from_marker);
+    matrix(op.observation.covariance);
+  }
+  void operator()(const RemoveMarkerObservations& op) {
+    word(op.id.number);
+    id(op.keyframe);
+  }
+  void operator()(const MoveMarker& op) {
+    word(op.id.number);
+    pose(op.world_from_marker);
+  }
 
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;

@@ -10,6 +10,7 @@
 #include "core/map/keyframe.h"
 #include "core/map/landmark.h"
 #include "core/map/mapped_plane.h"
+#include "core/map/marker.h"
 #include "core/map/structure.h"
 
 namespace vsgraphs {
@@ -119,11 +120,35 @@ struct MoveStructureNodes {
   std::vector<Eigen::Vector3d> rooms, floors;
 };
 
+// Does nothing if the number is mapped already.
+struct AddMarker {
+  MarkerId id;
+  MappedMarker marker;  // without observations
+};
+struct RemoveMarker {
+  MarkerId id;
+};
+// Does nothing without the marker or where the keyframe never was.
+struct AddMarkerObservation {
+  MarkerId id;
+  MarkerObservation observation;
+};
+// All that the keyframe saw of it. A marker that loses its last observation goes too.
+struct RemoveMarkerObservations {
+  MarkerId id;
+  KeyframeId keyframe;
+};
+struct MoveMarker {
+  MarkerId id;
+  Se3 world_from_marker;
+};
+
 using EditOperation =
     std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
                  RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings, SetPatches,
                  AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation, MovePlane,
-                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes>;
+                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, AddMarker, RemoveMarker,
+                 AddMarkerObservation, RemoveMarkerObservations, MoveMarker>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

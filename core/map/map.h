@@ -11,6 +11,7 @@
 #include "core/map/keyframe.h"
 #include "core/map/landmark.h"
 #include "core/map/mapped_plane.h"
+#include "core/map/marker.h"
 #include "core/map/structure.h"
 #include "core/map/table.h"
 
@@ -29,6 +30,7 @@ class Map {
   const Keyframes& keyframes() const { return keyframes_; }
   const Landmarks& landmarks() const { return landmarks_; }
   const Planes& planes() const { return planes_; }
+  const Markers& markers() const { return markers_; }
   // Unit vector against gravity; empty until ground and walls have agreed on it.
   const std::optional<Eigen::Vector3d>& up_in_world() const { return up_in_world_; }
   // Empty before rooms are sought.
@@ -45,6 +47,9 @@ class Map {
 
   // Mean of the middles of the plane's patches, world; its anchor if there are none. Linear in the observations.
   Eigen::Vector3d observed_centre(const MappedPlane& plane) const;
+
+  // Where the marker's observations say it hangs. Linear in them.
+  MarkerSightings sightings(const MappedMarker& marker) const;
 
   // Keyframes that share at least `min_shared` landmarks with `id`, most shared first (ties: lower id first).
   // Cost: one visit per observation of the keyframe's landmarks.
@@ -82,6 +87,11 @@ class Map {
   void apply_one(const SetUp& op);
   void apply_one(const SetStructure& op);
   void apply_one(const MoveStructureNodes& op);
+  void apply_one(const AddMarker& op);
+  void apply_one(const RemoveMarker& op);
+  void apply_one(const AddMarkerObservation& op);
+  void apply_one(const RemoveMarkerObservations& op);
+  void apply_one(const MoveMarker& op);
   // Rooms and floors that used a plane use what it was merged into, or do without it.
   void relink_structure(PlaneId gone, PlaneId into);
   void detach(LandmarkId landmark, const Observation& observation);
@@ -89,6 +99,7 @@ class Map {
   Keyframes keyframes_;
   Landmarks landmarks_;
   Planes planes_;
+  Markers markers_;
   Table<KeyframeId, RetiredKeyframe, 32, false> retired_;
   std::optional<Eigen::Vector3d> up_in_world_;
   std::shared_ptr<const FoundStructure> structure_ = std::make_shared<const FoundStructure>();

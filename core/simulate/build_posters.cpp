@@ -16,30 +16,38 @@ double thickness_of(const std::string& kind) {
 
 void add_poster(SceneAssembly& builder, std::size_t index) {
   const PosterPlan& plan = builder.plan().posters[index];
-  const std::string key = "posters[" + std::to_string(index) + "]";
-  const int r = builder.room_index(plan.room, key + ".room");
-  const auto& walls = builder.scene().rooms[static_cast<std::size_t>(r)].walls;
-  require_input(plan.wall >= 0 && plan.wall < static_cast<int>(walls.size()),
-                key + ".wall: room \"" + plan.room + "\" has walls 0.." + std::to_string(walls.size() - 1));
-  const WallGeometry& wall =
-      builder.scene().walls[static_cast<std::size_t>(walls[static_cast<std::size_t>(plan.wall)])];
-  const double a0 = plan.along - 0.5 * plan.width, a1 = plan.along + 0.5 * plan.width;
-  const double z0 = plan.z - 0.5 * plan.height, z1 = plan.z + 0.5 * plan.height;
-  require_input(a0 >= 0 && a1 <= wall.length && z0 >= 0 && z1 <= wall.height,
-                key + ": does not fit on its wall (" + std::to_string(wall.length) + " x " +
-                    std::to_string(wall.height) + " m)");
-  for (const Opening& o : wall.openings) {
-    require_input(a1 < o.along_min || a0 > o.along_max || z1 < o.z_min || z0 > o.z_max,
-                  key + ": hangs across a door or window");
-  }
+  const WallSpot spot = spot_on_wall(builder, "posters[" + std::to_string(index) + "]", plan.room, plan.wall,
+                                     {plan.along, plan.z}, {plan.width, plan.height});
   const bool plate = plan.kind == "socket" || plan.kind == "switch";
-  const Tag tag = builder.add_instance(plate ? SceneClass::misc : SceneClass::picture, r, plan.kind);
-  const Stand stand{{wall.p0.x(), wall.p0.y(), wall.z_floor}, wall.along};
-  builder.add_box(tag, stand, {a0, 0, z0}, {a1, thickness_of(plan.kind), z1}, {"lacquer", 1, {84, 84, 86}},
-                  all_sides & ~BoxSide::back, Material{plan.kind, plan.seed, {255, 255, 255}});
+  const Tag tag = builder.add_instance(plate ? SceneClass::misc : SceneClass::picture, spot.room, plan.kind);
+  const Eigen::Vector3d front(spot.high.x(), thickness_of(plan.kind), spot.high.z());
+  builder.add_box(tag, spot.stand, spot.low, front, {"lacquer", 1, {84, 84, 86}}, all_sides & ~BoxSide::back,
+                  Material{plan.kind, plan.seed, {255, 255, 255}});
 }
 
 }  // namespace
+
+WallSpot spot_on_wall(const SceneAssembly& builder, const std::string& key, const std::string& room,
+                      int wall_index, const Eigen::Vector2d& centre, const Eigen::Vector2d& size) {
+  const int r = builder.room_index(room, key + ".room");
+  const auto& walls = builder.scene().rooms[static_cast<std::size_t>(r)].walls;
+  require_input(wall_index >= 0 && wall_index < static_cast<int>(walls.size()),
+                key + ".wall: room \"" + room + "\" has walls 0.." + std::to_string(walls.size() - 1));
+  const WallGeometry& wall =
+      builder.scene().walls[static_cast<std::size_t>(walls[static_cast<std::size_t>(wall_index)])];
+  const Eigen::Vector2d low = centre - 0.5 * size, high = centre + 0.5 * size;
+  require_input(low.x() >= 0 && high.x() <= wall.length && low.y() >= 0 && high.y() <= wall.height,
+                key + ": does not fit on its wall (" + std::to_string(wall.length) + " x " +
+                    std::to_string(wall.height) + " m)");
+  for (const Opening& o : wall.openings) {
+    require_input(high.x() < o.along_min || low.x() > o.along_max || high.y() < o.z_min || low.y() > o.z_max,
+                  key + ": hangs across a door or window");
+  }
+  return {r,
+          {{wall.p0.x(), wall.p0.y(), wall.z_floor}, wall.along},
+          {low.x(), 0, low.y()},
+          {high.x(), 0, high.y()}};
+}
 
 std::vector<std::string> poster_kinds() {
   return {"poster", "picture", "board", "clock", "notice", "socket", "switch"};

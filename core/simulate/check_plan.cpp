@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/base/check.h"
+#include "core/simulate/marker_bits.h"
 #include "core/simulate/scene_builder.h"
 
 namespace vsgraphs {
@@ -115,6 +116,10 @@ void check_things(const Plan& plan) {
     one_of(p.kind, poster_kinds(), at("posters", i) + ".kind");
     in_range(p.width, 0.02, 10, at("posters", i) + ".width");
     in_range(p.height, 0.02, 10, at("posters", i) + ".height");
+  }
+  for (std::size_t i = 0; i < plan.markers.size(); ++i) {
+    in_range(plan.markers[i].id, 0, static_cast<double>(marker_bits.size() - 1), at("markers", i) + ".id");
+    in_range(plan.markers[i].size, 0.02, 2, at("markers", i) + ".size");
   }
   for (std::size_t i = 0; i < plan.boxes.size(); ++i) {
     const BoxPlan& b = plan.boxes[i];

@@ -69,6 +69,16 @@ struct PosterPlan {
   std::uint64_t seed = 0;       // equal kinds, sizes and seeds look equal
 };
 
+// A square ArUco marker of the dictionary 4x4_50 on a white sheet, flat on a wall.
+struct MarkerPlan {
+  int id = 0;  // 0..49; the same number may hang twice
+  std::string room;
+  int wall = 0;
+  double along = 1;    // centre, metres from vertex `wall`
+  double z = 1.5;      // centre above the floor
+  double size = 0.16;  // side of the black square; the sheet is wider by a sixth of it on each side
+};
+
 struct BoxPlan {
   std::string kind = "box";  // see furniture_kinds()
   std::string room;
@@ -122,6 +132,7 @@ struct Plan {
   std::vector<DoorPlan> doors;
   std::vector<WindowPlan> windows;
   std::vector<PosterPlan> posters;
+  std::vector<MarkerPlan> markers;
   std::vector<BoxPlan> boxes;
   std::vector<StairsPlan> stairs;
   PathPlan path;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/simulate/canvas.h"
+#include "core/simulate/marker_bits.h"
 #include "core/simulate/materials.h"
 
 namespace vsgraphs {
@@ -100,6 +101,18 @@ Canvas wall_plate(Rng& rng, bool with_holes) {
   return c;
 }
 
+Canvas marker(std::uint64_t number) {
+  constexpr Rgb white{228, 228, 226}, black{28, 28, 30};
+  constexpr double cell = 1.0 / (marker_cells + 2);
+  Canvas c(256, 256, white);
+  c.fill(cell, cell, 1 - cell, 1 - cell, black);
+  for (int i = 0; i < 16; ++i) {
+    const double x = (2 + i % 4) * cell, y = (2 + i / 4) * cell;
+    if (marker_bits[number] >> (15 - i) & 1) c.fill(x, y, x + cell, y + cell, white);
+  }
+  return c;
+}
+
 }  // namespace
 
 PaintedMaterial paint_print(const Material& m) {
@@ -111,6 +124,7 @@ PaintedMaterial paint_print(const Material& m) {
   if (m.kind == "notice") return {notice(rng).image()};
   if (m.kind == "socket") return {wall_plate(rng, true).image()};
   if (m.kind == "switch") return {wall_plate(rng, false).image()};
+  if (m.kind == "marker") return {marker(m.seed).image()};
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/se3.h"
 #include "core/simulate/camera_path.h"
 #include "core/simulate/materials.h"
 #include "core/simulate/plan.h"
@@ -110,6 +111,12 @@ struct WindowGeometry {
   std::uint16_t instance = 0;
 };
 
+struct MarkerGeometry {
+  int room = 0;
+  Se3 world_from_marker;  // origin in the middle of the print; x to the right of who reads it, y up, z out of the wall
+  std::uint16_t instance = 0;
+};
+
 // Something solid the camera must not enter: a box turned about the vertical.
 struct Solid {
   Eigen::Vector2d center, half;
@@ -128,10 +135,11 @@ struct Scene {
   std::vector<Face> faces;
   std::vector<MaterialStore::Entry> materials;
   std::vector<Instance> instances;
-  std::vector<RoomGeometry> rooms;  // in the plan's order, as are doors and windows
+  std::vector<RoomGeometry> rooms;  // in the plan's order, as are doors, windows and markers
   std::vector<WallGeometry> walls;
   std::vector<DoorGeometry> doors;
   std::vector<WindowGeometry> windows;
+  std::vector<MarkerGeometry> markers;
   std::vector<Solid> solids;
   std::vector<Light> lights;
   CameraPath path;

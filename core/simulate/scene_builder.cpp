@@ -106,6 +106,7 @@ Scene build_scene(const Plan& plan) {
   build_openings(builder);
   build_furniture(builder);
   build_posters(builder);
+  build_markers(builder);  // last: plans without any stay as they were
   Scene scene = builder.take();
   light_scene(scene);
   scene.path = plan_path(scene);

@@ -40,6 +40,7 @@ class SceneAssembly {
 
   Scene& scene() { return scene_; }
   Scene take();  // the scene with its materials; the builder is empty afterwards
+  const Scene& scene() const { return scene_; }
   const Plan& plan() const { return scene_.plan; }
 
   Tag add_instance(SceneClass label, int room, const std::string& kind = "", int side = -1, int door = -1);
@@ -64,6 +65,17 @@ class SceneAssembly {
   MaterialStore materials_;
 };
 
+// A rectangle on a wall: `stand` at the foot of the wall's beginning, `low` and `high` in its coordinates, the upper y open.
+struct WallSpot {
+  int room = 0;
+  Stand stand;
+  Eigen::Vector3d low, high;
+};
+// What hangs flat: room and wall as a plan names them, the rectangle's middle and size. Throws InputError, which begins with
+// `key`, where it does not fit or hangs across an opening.
+WallSpot spot_on_wall(const SceneAssembly& builder, const std::string& key, const std::string& room,
+                      int wall_index, const Eigen::Vector2d& centre, const Eigen::Vector2d& size);
+
 // The parts of the work, one file each. They throw InputError naming the plan's field.
 void check_plan(const Plan& plan);
 void lay_out_rooms(SceneAssembly& builder);    // walls, doors and windows as geometry; no surfaces yet
@@ -71,6 +83,7 @@ void build_rooms(SceneAssembly& builder);      // floors, ceilings, walls, skirt
 void build_openings(SceneAssembly& builder);   // doors and windows
 void build_furniture(SceneAssembly& builder);  // boxes and stairs
 void build_posters(SceneAssembly& builder);
+void build_markers(SceneAssembly& builder);
 void light_scene(Scene& scene);
 CameraPath plan_path(const Scene& scene);  // way-points to a checked path
 

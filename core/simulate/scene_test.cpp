@@ -124,6 +124,63 @@ TEST(Scene, PlansThatCannotBeBuiltSayWhy) {
               HasSubstr("windows[0]: reaches beyond"));
 }
 
+TEST(Scene, MarkersHangOnTheirWallsAndLookIntoTheRoom) {
+  Plan plan = two_rooms_plan();
+  plan.markers = {{7, "A", 2, 1.0, 1.4, 0.18}, {0, "A", 3, 1.0, 1.5, 0.18}};
+  const Scene scene = build_scene(plan);
+  ASSERT_EQ(scene.markers.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const MarkerPlan& hung = plan.markers[i];
+    const WallGeometry& wall =
+        scene.walls[static_cast<std::size_t>(scene.rooms[0].walls[static_cast<std::size_t>(hung.wall)])];
+    const Se3& pose = scene.markers[i].world_from_marker;
+    const Eigen::Vector3d inwards(wall.normal.x(), wall.normal.y(), 0);
+    EXPECT_TRUE(pose.rotation().col(2).isApprox(inwards));
+    EXPECT_TRUE(pose.rotation().col(1).isApprox(Eigen::Vector3d::UnitZ()));
+    EXPECT_NEAR(pose.rotation().determinant(), 1, 1e-12);
+    const Eigen::Vector2d at = wall.p0 + hung.along * wall.along;
+    const Eigen::Vector3d middle(at.x(), at.y(), wall.z_floor + hung.z);
+    EXPECT_LT((pose.translation() - middle).norm(), 0.01);
+    EXPECT_EQ(scene.instances[scene.markers[i].instance].kind, "marker");
+  }
+}
+
+// Light where the print is white, as read through the texture of the sheet's front.
+TEST(Scene, AMarkersFaceShowsItsBits) {
+  Plan plan = two_rooms_plan();
+  plan.markers = {{7, "A", 2, 1.0, 1.4, 0.18}};
+  const Scene scene = build_scene(plan);
+  const Eigen::Vector3d outwards = scene.markers[0].world_from_marker.rotation().col(2);
+  for (const Face& face : scene.faces) {
+    if (face.instance != scene.markers[0].instance || !face.normal().isApprox(outwards)) continue;
+    const Texture& texture = scene.materials[static_cast<std::size_t>(face.material)].texture;
+    // Number 7 of 4x4_50 in its black frame and the sheet's margin, from the upper left.
+    const char* expected[] = {"11111111", "10000001", "10110001", "10010001",
+                              "10111101", "10001001", "10000001", "11111111"};
+    for (int row = 0; row < 8; ++row)
+      for (int column = 0; column < 8; ++column) {
+        const float s = (static_cast<float>(column) + 0.5F) / 8, t = 1 - (static_cast<float>(row) + 0.5F) / 8;
+        EXPECT_EQ(texture.sample(s, t, 0).r > 128, expected[row][column] == '1') << row << " " << column;
+      }
+    EXPECT_TRUE(face.s_axis.isApprox(scene.markers[0].world_from_marker.rotation().col(0)));
+    EXPECT_TRUE(face.t_axis.isApprox(Eigen::Vector3d::UnitZ()));
+    return;
+  }
+  FAIL() << "no face looks into the room";
+}
+
+TEST(Scene, MarkersThatCannotHangSayWhy) {
+  EXPECT_THAT(complaint([](Plan& p) { p.markers.push_back({50, "A", 2}); }), HasSubstr("markers[0].id"));
+  EXPECT_THAT(complaint([](Plan& p) { p.markers.push_back({-1, "A", 2}); }), HasSubstr("markers[0].id"));
+  EXPECT_THAT(complaint([](Plan& p) { p.markers.push_back({1, "A", 2, 1, 1.5, 0}); }),
+              HasSubstr("markers[0].size"));
+  EXPECT_THAT(complaint([](Plan& p) { p.markers.push_back({1, "Z", 2}); }), HasSubstr("markers[0].room"));
+  EXPECT_THAT(complaint([](Plan& p) { p.markers.push_back({1, "A", 1, 2.0}); }),
+              HasSubstr("markers[0]: hangs across a door"));
+  EXPECT_THAT(complaint([](Plan& p) { p.markers.push_back({1, "A", 2, 0.05}); }),
+              HasSubstr("markers[0]: does not fit"));
+}
+
 TEST(Scene, PathsThroughThingsNameTheWaypoint) {
   EXPECT_THAT(complaint([](Plan& p) { p.path.waypoints[1].at = {7, 2.9}; }),  // misses the door
               HasSubstr("path.waypoints[0]: the way on from here comes too close to wall 1 of room \"A\""));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/solve/factors/relative_pose.h"
+#include "core/solve/window_markers.h"
 #include "core/solve/window_planes.h"
 #include "core/solve/window_structure.h"
 
@@ -107,7 +108,9 @@ Matrix6d square_root(const Matrix6d& information) {
   return stiffened.llt().matrixU();
 }
 
-void build_tracked_links(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
+void build_tracked_links(const Map& map, const Window&, const MeasurementModel& model,
+                         WindowProblem& problem) {
+  if (!model.factors.tracked_link) return;
   const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
   for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i) {
     const auto& link = map.keyframes().find(problem.keyframe_of_pose[i])->tracked_link;
@@ -126,9 +129,9 @@ void build_tracked_links(const Map& map, const Window&, const MeasurementModel&,
 }
 
 using FactorBuilder = void (*)(const Map&, const Window&, const MeasurementModel&, WindowProblem&);
-constexpr std::array<FactorBuilder, 5> factor_builders = {build_landmark_factors, build_tracked_links,
-                                                          build_plane_factors, build_wall_to_ground_factors,
-                                                          build_room_factors};
+constexpr std::array<FactorBuilder, 6> factor_builders = {
+    build_landmark_factors,       build_tracked_links, build_plane_factors,
+    build_wall_to_ground_factors, build_room_factors,  build_marker_factors};
 
 }  // namespace
 
@@ -201,6 +204,7 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
     draft.record(MoveLandmark{id, after * (before.inverse() * landmark->point_in_world)});
   }
   move_passenger_planes(problem, draft);
+  move_passenger_markers(problem, draft);
   for (std::size_t i = 0; i < bundle.poses.size(); ++i) {
     if (!bundle.pose_fixed[i]) draft.record(MoveKeyframe{problem.keyframe_of_pose[i], bundle.poses[i]});
   }
@@ -209,6 +213,9 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
   }
   for (std::size_t i = 0; i < problem.plane_of_variable.size(); ++i) {
     draft.record(MovePlane{problem.plane_of_variable[i], bundle.structures.planes[i]});
+  }
+  for (std::size_t i = 0; i < problem.marker_of_variable.size(); ++i) {
+    draft.record(MoveMarker{problem.marker_of_variable[i], bundle.structures.markers[i]});
   }
   move_nodes(problem, draft);
 }

@@ -8,6 +8,7 @@
 #include "core/map/draft.h"
 #include "core/map/map.h"
 #include "core/solve/bundle_adjustment.h"
+#include "core/solve/factor_switches.h"
 
 namespace vsgraphs {
 
@@ -22,11 +23,12 @@ struct Window {
 // outer keyframe the oldest of the window is fixed. Deterministic; cost linear in the window's observations.
 Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fixed);
 
-// How reliable a measurement is, by the pyramid level it was made at and the sensor's noise.
+// How reliable a measurement is, by the pyramid level it was made at and the sensor's noise; and which kinds count.
 struct MeasurementModel {
   Camera camera;
   double scale_factor = 1.2;  // of the pyramid
   double sigma_px = 1.0;      // at level 0
+  FactorSwitches factors;
 };
 
 // The window as an optimisation problem, with the way back.
@@ -37,13 +39,15 @@ struct WindowProblem {
   std::vector<PlaneId> plane_of_variable;
   std::vector<int> room_of_centroid;  // index into the map's rooms; these centroids come first
   std::vector<std::pair<int, int>> floor_of_centroid;  // (centroid, index into the map's floors)
+  std::vector<MarkerId> marker_of_variable;
 };
 
-// Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground, rooms and floors.
+// Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground, rooms and floors,
+// markers.
 WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);
 
-// Records the solution in `draft`: moved poses, landmarks, passengers and planes, and removes the observations that
-// `report` calls outliers.
+// Records the solution in `draft`: moved poses, landmarks, passengers, planes and markers, and removes the
+// observations that `report` calls outliers.
 void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report,
                     Draft& draft);
 

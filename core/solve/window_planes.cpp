@@ -108,7 +108,8 @@ std::vector<PlaneId> planes_of_rooms_in_window(const Map& map, PlaneGathering& g
 
 }  // namespace
 
-void build_plane_factors(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
+void build_plane_factors(const Map& map, const Window&, const MeasurementModel& model,
+                         WindowProblem& problem) {
   PlaneGathering gathering(map, problem);
   const std::vector<PlaneId> wanted = planes_of_rooms_in_window(map, gathering);
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
@@ -117,16 +118,19 @@ void build_plane_factors(const Map& map, const Window&, const MeasurementModel&,
     const AnchoredPlane start = plane.plane.anchored_at(gathering.anchor(plane));
     problem.bundle.structures.planes.push_back(start);
     problem.plane_of_variable.push_back(id);
-    for (const SeenByPose& s : gathering.inside())
-      problem.bundle.factors.push_back(std::make_unique<PlaneObservationFactor>(s.pose, index, s.seen));
+    for (const SeenByPose& s : gathering.inside()) {
+      if (model.factors.plane_observation)
+        problem.bundle.factors.push_back(std::make_unique<PlaneObservationFactor>(s.pose, index, s.seen));
+    }
+    if (!model.factors.plane_prior) return;
     if (const auto known = condense_observations(gathering.outside(), start))
       problem.bundle.factors.push_back(std::make_unique<PlanePrior>(index, *known, huber_3dof));
   });
 }
 
-void build_wall_to_ground_factors(const Map& map, const Window&, const MeasurementModel&,
+void build_wall_to_ground_factors(const Map& map, const Window&, const MeasurementModel& model,
                                   WindowProblem& problem) {
-  if (!map.up_in_world()) return;
+  if (!map.up_in_world() || !model.factors.wall_upright) return;
   const Eigen::Vector3d& up = *map.up_in_world();
   const auto& planes = problem.bundle.structures.planes;
   const auto role = [&](std::size_t i) { return map.planes().find(problem.plane_of_variable[i])->role; };

@@ -30,7 +30,7 @@ void hold(const Pairs& pairs, WindowProblem& problem) {
   for (const auto& [a, b] : pairs) problem.bundle.factors.push_back(std::make_unique<Factor>(a, b, angle));
 }
 
-void hold_angles(const std::vector<int>& walls, WindowProblem& problem) {
+void hold_angles(const std::vector<int>& walls, const FactorSwitches& factors, WindowProblem& problem) {
   constexpr AngleGate gate;
   Pairs parallel, perpendicular;
   for (std::size_t i = 0; i < walls.size(); ++i) {
@@ -42,8 +42,8 @@ void hold_angles(const std::vector<int>& walls, WindowProblem& problem) {
         perpendicular.emplace_back(walls[i], walls[j]);
     }
   }
-  hold<PlaneParallel>(parallel, problem);
-  hold<PlanePerpendicular>(perpendicular, problem);
+  if (factors.plane_parallel) hold<PlaneParallel>(parallel, problem);
+  if (factors.plane_perpendicular) hold<PlanePerpendicular>(perpendicular, problem);
 }
 
 // Only where all of the room's walls take part: the mean of some of them is another point.
@@ -81,13 +81,15 @@ void tie_floors(const Map& map, WindowProblem& problem) {
 
 }  // namespace
 
-void build_room_factors(const Map& map, const Window&, const MeasurementModel&, WindowProblem& problem) {
+void build_room_factors(const Map& map, const Window&, const MeasurementModel& model,
+                        WindowProblem& problem) {
   for (std::size_t i = 0; i < map.structure().rooms.size(); ++i) {
     const std::vector<int> walls = walls_in(map.structure().rooms[i], problem);
-    hold_angles(walls, problem);
-    tie_node(map, i, walls, problem);
+    hold_angles(walls, model.factors, problem);
+    // A node without its factor would be a variable that nothing holds.
+    if (model.factors.room_centroid) tie_node(map, i, walls, problem);
   }
-  tie_floors(map, problem);
+  if (model.factors.floor_centroid) tie_floors(map, problem);
 }
 
 }  // namespace vsgraphs

@@ -6,11 +6,12 @@
 
 namespace vsgraphs {
 
-LocalMapper::LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid)
+LocalMapper::LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid,
+                         const FactorSwitches& factors)
     : options_(options),
       camera_(camera),
       pyramid_(pyramid),
-      model_{camera, pyramid.factor, options.sigma_px} {}
+      model_{camera, pyramid.factor, options.sigma_px, factors} {}
 
 MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& id,
                             TraceSink* trace) {

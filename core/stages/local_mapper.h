@@ -43,7 +43,8 @@ void describe(LocalMapperOptions& o, Visitor& field) {
 
 class LocalMapper {
  public:
-  LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid);
+  LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid,
+              const FactorSwitches& factors = {});
 
   // Adds the requested keyframe with its observations and new landmarks. `keyframe` receives its id.
   MapEdit insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& keyframe,

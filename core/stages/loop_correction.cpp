@@ -57,6 +57,18 @@ AnchoredPlane moved_plane(const Map& map, const MappedPlane& plane, const Correc
   return moved;
 }
 
+namespace {
+
+// The living keyframe that stands for the first one that saw the marker where it stands.
+std::optional<KeyframeId> carrier_of(const Map& map, const MappedMarker& marker) {
+  const MarkerSightings sightings = map.sightings(marker);
+  if (sightings.places.empty()) return std::nullopt;
+  const std::size_t first = sightings.places.front().observations.front();
+  return map.reanchor({marker.observations[first].keyframe, Se3{}})->keyframe;
+}
+
+}  // namespace
+
 void move_map(const Corrections& corrections, Draft& draft) {
   const Map before = draft.map();
   before.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
@@ -70,6 +82,10 @@ void move_map(const Corrections& corrections, Draft& draft) {
   before.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
     draft.record(MovePlane{id, moved_plane(before, plane, corrections)});
   });
+  for (const auto& [id, marker] : before.markers()) {
+    if (const auto living = carrier_of(before, *marker))
+      draft.record(MoveMarker{id, (corrections[living->index] * marker->world_from_marker).normalized()});
+  }
 }
 
 void join_sights(const LoopAlignment& loop, Draft& draft) {

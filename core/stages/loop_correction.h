@@ -34,7 +34,8 @@ using Corrections = std::vector<Se3>;
 Corrections spread_correction(const Map& map, const KeyframeGraph& graph, const LoopAlignment& loop,
                               KeyframeId place, const LoopCorrectionOptions& options, SolveReport& report);
 
-// Moves keyframes, landmarks (with the first keyframe that observed them) and planes (by the mean of those that see them).
+// Moves keyframes, landmarks and markers (with the first keyframe that observed them) and planes (by the mean of those that
+// see them).
 void move_map(const Corrections& corrections, Draft& draft);
 
 // One plane as its observers' corrections have it.

@@ -101,6 +101,24 @@ TEST_F(LoopCorrectionTest, APlaneOfACulledKeyframeFollowsItsAnchor) {
   EXPECT_NEAR(moved_plane(map_, before, c).d(), before.plane.transformed(standing_at(1, 2, 3)).d(), 1e-12);
 }
 
+TEST_F(LoopCorrectionTest, MarkersMoveWithTheFirstKeyframeThatSawThemOrItsAnchor) {
+  const Se3 seen = standing_at(0, 0, 2);
+  const Se3 placed = map_.keyframes().find(at(20))->world_from_camera * seen;
+  for (const std::uint32_t number : {1U, 2U}) map_.apply(AddMarker{{number}, {0.16, placed, {}}});
+  map_.apply(AddMarkerObservation{{1}, {at(20), seen}});
+  map_.apply(AddMarkerObservation{{2}, {at(21), seen}});
+  map_.apply(RemoveKeyframe{at(21), at(22)});
+  const Corrections c = corrections();
+  Draft draft(map_.snapshot());
+  move_map(c, draft);
+  const auto moved = [&](std::uint32_t number) {
+    return draft.map().markers().at({number})->world_from_marker;
+  };
+  EXPECT_LT(((c[at(20).index] * placed).matrix() - moved(1).matrix()).norm(), 1e-9);
+  EXPECT_LT(((c[at(22).index] * placed).matrix() - moved(2).matrix()).norm(), 1e-9);
+  EXPECT_GT((placed.matrix() - moved(1).matrix()).norm(), 1e-3);
+}
+
 TEST_F(LoopCorrectionTest, SightsBecomeOneWithWhatTheKeyframeHad) {
   const std::vector<LandmarkId> here = map_.keyframes().find(at(31))->landmarks;
   const LandmarkId there = map_.keyframes().find(at(1))->landmarks[7];

@@ -80,6 +80,7 @@ class Rebaser {
   void say(const AddKeyframe&, std::vector<EditOperation>&) { refuse(); }
   void say(const AddLandmark&, std::vector<EditOperation>&) { refuse(); }
   void say(const AddPlane&, std::vector<EditOperation>&) { refuse(); }
+  void say(const AddMarker&, std::vector<EditOperation>&) { refuse(); }
   static void refuse() { throw InvariantError("an edit that adds to the map cannot be rebased"); }
 
   void say(const MoveKeyframe& op, std::vector<EditOperation>& out) {
@@ -116,6 +117,20 @@ class Rebaser {
       const AnchoredPlane is = present->plane.transformed(poses->now.inverse()).anchored_at(was.anchor);
       const AnchoredPlane both = is.retract(was.local(edited));
       out.push_back(MovePlane{op.id, both.transformed(poses->result)});
+      return;
+    }
+  }
+
+  void say(const MoveMarker& op, std::vector<EditOperation>& out) {
+    const auto before = old_.markers().find(op.id), present = now_.markers().find(op.id);
+    if (before == old_.markers().end() || present == now_.markers().end()) return;
+    for (const MarkerObservation& o : before->second->observations) {
+      const auto poses = poses_of(o.keyframe);
+      if (!poses) continue;
+      const Se3 was = poses->old.inverse() * before->second->world_from_marker;
+      const Se3 change = was.inverse() * (poses->edited.inverse() * op.world_from_marker);
+      const Se3 is = poses->now.inverse() * present->second->world_from_marker;
+      out.push_back(MoveMarker{op.id, (poses->result * is * change).normalized()});
       return;
     }
   }
@@ -157,6 +172,13 @@ class Rebaser {
       const auto living = now_.reanchor({plane.observations.front().keyframe, Se3{}});
       if (living) out.push_back(MovePlane{id, plane.plane.transformed(corrections_[living->keyframe.index])});
     });
+    for (const auto& [id, marker] : now_.markers()) {
+      if (old_.markers().contains(id) || marker->observations.empty()) continue;
+      const auto living = now_.reanchor({marker->observations.front().keyframe, Se3{}});
+      if (!living) continue;
+      const Se3& correction = corrections_[living->keyframe.index];
+      out.push_back(MoveMarker{id, (correction * marker->world_from_marker).normalized()});
+    }
   }
 
   const MapEdit& edit_;

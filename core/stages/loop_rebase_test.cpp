@@ -31,6 +31,9 @@ class Rebase : public ::testing::TestWithParam<int> {
     const Keyframe& first = *map_.keyframes().find(world_.ids[0]);
     plane_ = add_plane(map_, first.patches->patches[0].plane.transformed(first.world_from_camera),
                        {{world_.ids[0], 0}, {world_.ids[1], 0}, {world_.ids[2], 0}});
+    const Se3 seen(Eigen::Matrix3d::Identity(), {0.2, 0.1, 2});
+    map_.apply(AddMarker{{3}, {0.16, first.world_from_camera * seen, {}}});
+    map_.apply(AddMarkerObservation{{3}, {world_.ids[0], seen}});
     old_ = map_.snapshot();
   }
   static test::LoopWorldOptions options() {
@@ -52,6 +55,8 @@ class Rebase : public ::testing::TestWithParam<int> {
     old_->planes().for_each([&](PlaneId id, const MappedPlane& p) {
       draft.record(MovePlane{id, p.plane.transformed(correction)});
     });
+    for (const auto& [id, marker] : old_->markers())
+      draft.record(MoveMarker{id, correction * marker->world_from_marker});
     return draft.take();
   }
 
@@ -68,6 +73,8 @@ class Rebase : public ::testing::TestWithParam<int> {
     before.planes().for_each([&](PlaneId id, const MappedPlane& p) {
       draft.record(MovePlane{id, p.plane.retract(draw(rng_, scale).head<3>())});
     });
+    for (const auto& [id, marker] : before.markers())
+      draft.record(MoveMarker{id, marker->world_from_marker.retract(draw(rng_, scale))});
     return draft.take();
   }
 
@@ -84,6 +91,10 @@ class Rebase : public ::testing::TestWithParam<int> {
       EXPECT_LT((expected.normal - is.normal).norm(), 1e-9);
       EXPECT_NEAR(is.signed_distance(expected.project(expected.anchor)), 0, 1e-9);
     });
+    for (const auto& [id, marker] : from.markers()) {
+      const Se3 expected = correction * marker->world_from_marker;
+      EXPECT_LT((expected.matrix() - to.markers().at(id)->world_from_marker.matrix()).norm(), 1e-9);
+    }
   }
 
   LoopWorld world_;
@@ -118,6 +129,8 @@ TEST_P(Rebase, WhatWasMadeSinceIsCarriedAlong) {
   const KeyframeId later = test::add_keyframe(map_, late);
   test::add_landmark(map_, {1, 2, 3}, 9999, {{later, 0}});
   add_plane(map_, AnchoredPlane{Eigen::Vector3d::UnitX(), {0.5, 0, 0}, 0.1}, {{later, 0}});
+  map_.apply(AddMarker{{4}, {0.16, late.world_from_camera, {}}});
+  map_.apply(AddMarkerObservation{{4}, {later, Se3{}}});
   map_.apply(MapEdit{});
   const Snapshot grown = map_.snapshot();
   map_.apply(rebase(edit, *old_, *grown));

@@ -136,6 +136,7 @@ void Config::visit(Visitor&& visitor) {
   describe_group("scene.extraction", scene.extraction, visitor);
   describe_group("scene.association", scene.association, visitor);
   describe_group("scene.role", scene.role, visitor);
+  describe_group("factors", factors, visitor);
   describe_group("loop", loop, visitor);
   describe_group("loop.alignment", loop.alignment, visitor);
   describe_group("loop.checks", loop.checks, visitor);

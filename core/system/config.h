@@ -67,6 +67,7 @@ class Config {
   SceneBuilderOptions scene;
   StructureBuilderOptions structure;
   LoopCloserOptions loop;
+  FactorSwitches factors;
 
   // Throws InputError: unknown key (names the nearest), wrong type, out of range (names the range).
   void set(const std::string& key, const OptionValue& value);

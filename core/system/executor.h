@@ -8,6 +8,7 @@
 #include "core/map/label_grid.h"
 #include "core/stages/messages.h"
 #include "core/system/config.h"
+#include "core/system/markers.h"
 #include "core/system/schedule.h"
 #include "core/system/span_recorder.h"
 
@@ -20,6 +21,8 @@ class Executor {
   virtual std::optional<TrackedFrame> track(const RgbdFrame& frame) = 0;
   // A segmentation of an earlier frame's image; without effect where that frame is no keyframe.
   virtual void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) = 0;
+  // Markers seen in an earlier frame's image; likewise.
+  virtual void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) = 0;
   // Waits for all work; afterwards the map is final. May be called twice.
   virtual void finish() = 0;
 

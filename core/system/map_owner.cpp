@@ -29,11 +29,11 @@ void SnapshotCell::close() {
 
 MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell)
     : snapshot_(map_.snapshot()),
-      mapper_(config.mapper, camera, config.orb.pyramid()),
+      mapper_(config.mapper, camera, config.orb.pyramid(), config.factors),
       scene_(config.scene, camera),
       structure_(config.structure),
       loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
-      model_{camera, config.orb.pyramid().factor, config.mapper.sigma_px},
+      model_{camera, config.orb.pyramid().factor, config.mapper.sigma_px, config.factors},
       closes_loops_(config.system.loop_closing),
       cell_(cell),
       spans_("local mapping"),
@@ -59,11 +59,16 @@ void MapOwner::find_planes() {
   apply(edit, {EditEvent::Kind::planes, newest_frame_, 0, 0});
 }
 
-bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
-  KeyframeId labelled;
+KeyframeId MapOwner::keyframe_of(std::int64_t frame_index) const {
+  KeyframeId found;
   map_.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    if (keyframe.frame_index == frame_index) labelled = id;
+    if (keyframe.frame_index == frame_index) found = id;
   });
+  return found;
+}
+
+bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
+  const KeyframeId labelled = keyframe_of(frame_index);
   if (!labelled.valid()) return false;
   scene_spans_.set_frame(frame_index);
   const MapEdit edit = [&] {
@@ -71,6 +76,18 @@ bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
     return scene_.propose(labelled, snapshot_, &labels, &scene_spans_);
   }();
   apply(edit, {EditEvent::Kind::labels, frame_index, 0, 0});
+  return true;
+}
+
+bool MapOwner::mark(std::int64_t frame_index, const MarkerDetections& detections) {
+  const KeyframeId seeing = keyframe_of(frame_index);
+  if (!seeing.valid()) return false;
+  scene_spans_.set_frame(frame_index);
+  const MapEdit edit = [&] {
+    const Span span(&scene_spans_, "place_markers");
+    return place_markers(seeing, detections, snapshot_);
+  }();
+  apply(edit, {EditEvent::Kind::markers, frame_index, 0, 0});
   return true;
 }
 

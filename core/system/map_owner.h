@@ -10,6 +10,7 @@
 #include "core/stages/scene_builder.h"
 #include "core/stages/structure_builder.h"
 #include "core/system/config.h"
+#include "core/system/markers.h"
 #include "core/system/schedule.h"
 #include "core/system/span_recorder.h"
 
@@ -57,6 +58,8 @@ class MapOwner {
   void find_rooms(bool last);
   // False, and nothing done, if the frame is no keyframe (any more).
   bool label(std::int64_t frame_index, const LabelGrid& labels);
+  // Likewise for markers seen in its image.
+  bool mark(std::int64_t frame_index, const MarkerDetections& detections);
   void refine(const std::function<bool()>& stop);
 
   std::uint64_t version() const { return map_.version(); }
@@ -66,6 +69,7 @@ class MapOwner {
 
  private:
   void apply(const MapEdit& edit, EditEvent event);
+  KeyframeId keyframe_of(std::int64_t frame_index) const;  // invalid if the frame is none
 
   Map map_;
   Snapshot snapshot_;

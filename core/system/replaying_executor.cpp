@@ -33,6 +33,10 @@ class ReplayingExecutor : public Executor {
     labels_[frame_index] = std::move(labels);
   }
 
+  void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) override {
+    markers_[frame_index] = std::move(detections);
+  }
+
   void finish() override {
     require_run(next_frame_ == schedule_.frames.size(),
                 "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
@@ -75,6 +79,14 @@ class ReplayingExecutor : public Executor {
         require_run(owner_.label(event.frame, *labels->second), departed(event));
         break;
       }
+      case EditEvent::Kind::markers: {
+        const auto markers = markers_.find(event.frame);
+        require_run(markers != markers_.end(),
+                    "replay: markers were seen in frame " + std::to_string(event.frame) +
+                        " of the recorded run and are not now; give the same --markers");
+        require_run(owner_.mark(event.frame, *markers->second), departed(event));
+        break;
+      }
       case EditEvent::Kind::rooms:
       case EditEvent::Kind::rooms_last:
         owner_.find_rooms(event.kind == EditEvent::Kind::rooms_last);
@@ -112,6 +124,7 @@ class ReplayingExecutor : public Executor {
   std::size_t next_frame_ = 0;
   std::deque<std::shared_ptr<const KeyframeRequest>> waiting_;
   std::map<std::int64_t, std::shared_ptr<const LabelGrid>> labels_;
+  std::map<std::int64_t, std::shared_ptr<const MarkerDetections>> markers_;
 };
 
 }  // namespace

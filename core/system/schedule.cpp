@@ -15,10 +15,11 @@ namespace vsgraphs {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, EditEvent::Kind>, 8> kinds = {{
+constexpr std::array<std::pair<const char*, EditEvent::Kind>, 9> kinds = {{
     {"insert", EditEvent::Kind::insert},
     {"planes", EditEvent::Kind::planes},
     {"labels", EditEvent::Kind::labels},
+    {"markers", EditEvent::Kind::markers},
     {"rooms", EditEvent::Kind::rooms},
     {"rooms_last", EditEvent::Kind::rooms_last},
     {"loop", EditEvent::Kind::loop},

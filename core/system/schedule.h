@@ -4,6 +4,7 @@
 //   insert FRAME HASH                 the frame became a keyframe; hash of the edit
 //   planes FRAME HASH                 its planes were sought
 //   labels FRAME HASH                 a segmentation of its image arrived
+//   markers FRAME HASH                markers seen in its image arrived
 //   rooms FRAME HASH                  rooms, floors and doors were sought
 //   rooms_last FRAME HASH             the same at the end of the run
 //   loop FRAME HASH                   it closed a loop
@@ -24,7 +25,7 @@ struct FrameEvent {
 };
 
 struct EditEvent {
-  enum class Kind { insert, planes, labels, rooms, rooms_last, loop, adjust, refine };
+  enum class Kind { insert, planes, labels, markers, rooms, rooms_last, loop, adjust, refine };
   Kind kind = Kind::insert;
   std::int64_t frame = 0;
   int iterations = 0;  // of refine and adjust

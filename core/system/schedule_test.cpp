@@ -50,6 +50,7 @@ Schedule some_schedule() {
                     {EditEvent::Kind::planes, 0, 0, 7},
                     {EditEvent::Kind::refine, 0, 15, 0},
                     {EditEvent::Kind::labels, 0, 0, 0xabcdefU},
+                    {EditEvent::Kind::markers, 0, 0, 0x1234U},
                     {EditEvent::Kind::insert, 7, 0, 10}};
   return schedule;
 }

@@ -30,6 +30,9 @@ class SerialExecutor : public Executor {
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
     if (options_.builds_scene()) owner_.label(frame_index, *labels);
   }
+  void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) override {
+    owner_.mark(frame_index, *detections);
+  }
   void finish() override {
     if (options_.builds_structure() && tracking_.requested() > 0 && !finished_) owner_.find_rooms(true);
     finished_ = true;

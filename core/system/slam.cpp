@@ -73,6 +73,12 @@ void Slam::add_segmentation(std::int64_t frame_index, const Segmentation& segmen
   if (!finished_) executor_->label(frame_index, std::move(labels));
 }
 
+void Slam::add_markers(std::int64_t frame_index, MarkerDetections detections) {
+  check_markers(detections);
+  if (!finished_)
+    executor_->mark(frame_index, std::make_shared<const MarkerDetections>(std::move(detections)));
+}
+
 Snapshot Slam::snapshot() const { return executor_->snapshot(); }
 
 std::int64_t Slam::backlog() const {

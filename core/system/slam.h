@@ -13,6 +13,7 @@
 #include "core/stages/messages.h"
 #include "core/system/config.h"
 #include "core/system/executor.h"
+#include "core/system/markers.h"
 #include "core/system/segmentation.h"
 
 namespace vsgraphs {
@@ -45,6 +46,11 @@ class Slam {
   // for frames that are no keyframes, it has no effect. `roles`: any size, stretched over the image; `confidence` 0..1
   // (empty: 1 everywhere) and `instances` (empty: none) of the same size. Throws InputError for other sizes or values.
   void add_segmentation(std::int64_t frame_index, const Segmentation& segmentation);
+
+  // Markers seen in the image of an earlier frame, in place of what was said of it before; when and where as above. A number
+  // may come twice. Throws InputError for sizes that are not positive, poses that are not finite and covariances that are
+  // not positive definite.
+  void add_markers(std::int64_t frame_index, MarkerDetections detections);
 
   // The newest published map; any thread, any time. Cost: one pointer.
   Snapshot snapshot() const;

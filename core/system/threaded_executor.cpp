@@ -30,7 +30,7 @@ class ThreadedExecutor : public Executor {
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     rethrow_worker_failure();
     TrackedFrame result = tracking_.track(frame, cell_.take());
-    if (result.keyframe_request) requests_.push({result.keyframe_request, 0, nullptr});
+    if (result.keyframe_request) requests_.push({result.keyframe_request, 0, nullptr, nullptr});
     // Nothing can be tracked before the first keyframe stands.
     if (result.status == TrackStatus::initialised) cell_.wait_for_inserted(1);
     if (!options_.realtime) wait_for_mapper();
@@ -38,7 +38,11 @@ class ThreadedExecutor : public Executor {
   }
 
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
-    if (options_.builds_scene()) requests_.push({nullptr, frame_index, std::move(labels)});
+    if (options_.builds_scene()) requests_.push({nullptr, frame_index, std::move(labels), nullptr});
+  }
+
+  void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) override {
+    requests_.push({nullptr, frame_index, nullptr, std::move(detections)});
   }
 
   void finish() override {
@@ -58,11 +62,12 @@ class ThreadedExecutor : public Executor {
   // Keyframes that wait while the whole map is adjusted, at the most: then it is cut short.
   static constexpr std::size_t adjustment_backlog = 8;
 
-  // A keyframe to make, or a segmentation of one.
+  // A keyframe to make, or what was found in the image of one.
   struct Work {
     std::shared_ptr<const KeyframeRequest> request;
-    std::int64_t labelled_frame = 0;
+    std::int64_t frame = 0;
     std::shared_ptr<const LabelGrid> labels;
+    std::shared_ptr<const MarkerDetections> markers;
   };
 
   void work() {
@@ -70,10 +75,9 @@ class ThreadedExecutor : public Executor {
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
     try {
       while (const auto work = requests_.pop()) {
-        if (work->labels) {
-          owner_.label(work->labelled_frame, *work->labels);
-          continue;
-        }
+        if (work->labels) owner_.label(work->frame, *work->labels);
+        if (work->markers) owner_.mark(work->frame, *work->markers);
+        if (!work->request) continue;
         owner_.insert(*work->request);
         if (options_.builds_scene()) owner_.find_planes();
         if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);

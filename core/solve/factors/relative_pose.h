@@ -7,7 +7,7 @@
 
 namespace vsgraphs {
 
-class RelativePose final : public DenseFactor {
+class RelativePose : public DenseFactor {
  public:
   RelativePose(VariableRef a, VariableRef b, const Se3& a_from_b, const Matrix6d& sqrt_information,
                Huber robust = {})

@@ -95,6 +95,10 @@ def run(
         str,
         typer.Option(help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images)."),
     ] = "geometry",
+    markers: Annotated[
+        Path | None,
+        typer.Option(help="JSON file of ArUco markers that name rooms and doors (docs/markers.md)."),
+    ] = None,
     map_colours: Annotated[
         str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
     ] = "image",
@@ -131,6 +135,7 @@ def run(
             max_frames=max_frames,
             segmenter=segmenter,
             map_colours=map_colours,
+            markers=markers,
             config_file=config,
             assignments=list(set_ or []),
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},

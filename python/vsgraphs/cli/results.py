@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
@@ -28,7 +28,18 @@ if TYPE_CHECKING:
     from vsgraphs.cli.session import Tally
     from vsgraphs.cli.viewing import RunView
     from vsgraphs.datasets import RecordedSequence
+    from vsgraphs.markers import KeyframeMarkers, MarkerRegistry
     from vsgraphs.segment import KeyframeSegmentation
+
+
+@dataclass
+class MarkerOutcome:
+    """What a run knows of markers beyond the map. warnings: of naming; there once the files were written."""
+
+    file: str  # as the user named it
+    registry: MarkerRegistry
+    search: KeyframeMarkers
+    warnings: list[str] = field(default_factory=list)
 
 
 @dataclass
@@ -47,6 +58,7 @@ class RunOutcome:
     segmenter: str = "geometry"  # as the user named it
     segmentation: KeyframeSegmentation | None = None
     view: RunView | None = None
+    markers: MarkerOutcome | None = None
 
 
 def write_results(outcome: RunOutcome) -> dict[str, Any]:
@@ -61,7 +73,7 @@ def write_results(outcome: RunOutcome) -> dict[str, Any]:
     positions, colours = snapshot.landmarks()
     graph = None
     if outcome.config.get("system.mode") != "slam":
-        graph = SceneGraph.from_map(snapshot.scene_graph(), (ids, keyframe_stamps, keyframe_poses))
+        graph = _scene_graph(outcome, snapshot.scene_graph(), (ids, keyframe_stamps, keyframe_poses))
         poses, keyframe_poses = graph.poses_from_map(poses), graph.poses_from_map(keyframe_poses)
         positions = graph.points_from_map(positions)
         if outcome.map_colours == "class":
@@ -95,6 +107,28 @@ def write_results(outcome: RunOutcome) -> dict[str, Any]:
             + (f"; written: {', '.join(kept)}" if kept else "; nothing was written")
         )
     return report
+
+
+def _scene_graph(outcome: RunOutcome, raw: dict[str, Any], keyframes: tuple[Any, Any, Any]) -> SceneGraph:
+    """The map's graph; with a marker file, named by it."""
+    markers = outcome.markers
+    if markers is None:
+        return SceneGraph.from_map(raw, keyframes)
+    from vsgraphs.markers import name_by_markers, told_of_two_places
+
+    graph = SceneGraph.from_map({**raw, "markers": raw["markers"] or []}, keyframes)  # they were looked for
+    markers.warnings = told_of_two_places(raw) + name_by_markers(graph, markers.registry)
+    return graph
+
+
+def _marker_figures(outcome: RunOutcome, graph: SceneGraph | None) -> dict[str, Any]:
+    markers = outcome.markers
+    if markers is None:
+        return {}
+    nodes = graph.markers.values() if graph is not None else ()
+    mapped = [{"id": node.id, "name": node.name, "keyframes": len(node.observed_by)} for node in nodes]
+    figures = {"file": markers.file, "dictionary": markers.registry.dictionary, **markers.search.report()}
+    return {"markers": {**figures, "mapped": mapped}}
 
 
 def _scene_files(graph: SceneGraph, poses: Any) -> dict[str, Callable[[], str | bytes]]:
@@ -151,6 +185,7 @@ def run_report(
             **(outcome.segmentation.report() if outcome.segmentation else {}),
         },
         **({"view": shown} if shown else {}),
+        **_marker_figures(outcome, graph),
         "source": {
             "name": outcome.sequence.name,
             "format": outcome.sequence.format,
@@ -165,6 +200,7 @@ def run_report(
             *outcome.tally.warnings,
             *(outcome.segmentation.warnings if outcome.segmentation else ()),
             *(outcome.view.warnings if outcome.view else ()),
+            *([*outcome.markers.search.warnings, *outcome.markers.warnings] if outcome.markers else ()),
             *statistics["warnings"],
         ],
     }
@@ -185,6 +221,8 @@ def summarise(report: dict[str, Any], out: Path) -> str:
 def _spans(outcome: RunOutcome) -> list[Span]:
     spans: list[Span] = [tuple(span) for span in outcome.slam.trace()]
     spans += [("decoding", "decode", *span) for span in outcome.tally.decode_spans]
+    if outcome.markers is not None:
+        spans += [("markers", "search", *span) for span in outcome.markers.search.spans]
     if outcome.segmentation is not None:
         spans += [("segmentation", "segment", *span) for span in outcome.segmentation.spans]
     return spans

@@ -14,7 +14,7 @@ from vsgraphs.cli import measures
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
 from vsgraphs.cli.progress import Progress
-from vsgraphs.cli.results import RunOutcome, summarise, write_results
+from vsgraphs.cli.results import MarkerOutcome, RunOutcome, summarise, write_results
 from vsgraphs.cli.session import Session, Tally
 from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
 from vsgraphs.cli.viewing import RunView, Showing
@@ -24,6 +24,7 @@ from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import prepare_directory
 
 if TYPE_CHECKING:
+    from vsgraphs.markers import KeyframeMarkers, MarkerDetector, MarkerRegistry
     from vsgraphs.segment import KeyframeSegmentation, RecordedSegmentations, Segmenter
 
 # How long keyframes that still wait for the segmenter may take once all frames are tracked.
@@ -43,6 +44,7 @@ class RunRequest:
     max_frames: int | None = None
     segmenter: str = "geometry"
     map_colours: str = "image"
+    markers: Path | None = None
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
@@ -54,6 +56,7 @@ def run_sequence(request: RunRequest) -> int:
     sequence = open_sequence(request.source, request.camera)
     _check_map_colours(request)
     segmenter = _make_segmenter(request.segmenter)
+    sought = _sought_markers(request.markers, sequence)
     prepare_directory(request.out)
     _check_schedule_out(request)
     view = RunView(request.showing)
@@ -68,9 +71,12 @@ def run_sequence(request: RunRequest) -> int:
             progress = Progress(len(frames))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
             stamps = [frame.timestamp for frame in frames]
-            segmentation = _beside_tracking(slam, segmenter, config, progress)
+            markers = _markers_beside_tracking(slam, sought, config)
+            segmentation = _beside_tracking(markers or slam, segmenter, config, progress)
             mode = config.get("system.mode")
-            tracker = view.watch(segmentation or slam, slam, sequence.calibration, mode, progress.event)
+            tracker = view.watch(
+                segmentation or markers or slam, slam, sequence.calibration, mode, progress.event
+            )
             session = Session(tracker, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
             failure = _attempt(session.run)
@@ -80,10 +86,11 @@ def run_sequence(request: RunRequest) -> int:
                 print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
             stopped = session.tally.interrupted or failure is not None
             limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
-            draining = _attempt(lambda: _drain(segmentation, limit_s, interrupt.requested))
+            draining = _attempt(lambda: _drain(segmentation, markers, limit_s, interrupt.requested))
             failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
             outcome.segmentation, outcome.view = segmentation, view
+            outcome.markers = _marker_outcome(request, sought, markers)
             report = _write(outcome, failure)
     if failure is not None:
         raise failure
@@ -130,15 +137,60 @@ def _beside_tracking(
         return None
     from vsgraphs.segment import KeyframeSegmentation
 
-    repeatable = config.get("system.execution") == "serial" or bool(config.get("system.replay"))
-    return KeyframeSegmentation(slam, segmenter, beside=not repeatable, tell=progress.event)
+    return KeyframeSegmentation(slam, segmenter, beside=not _repeatable(config), tell=progress.event)
+
+
+@dataclass(frozen=True)
+class _SoughtMarkers:
+    registry: MarkerRegistry
+    detector: MarkerDetector
+
+
+def _sought_markers(path: Path | None, sequence: RecordedSequence) -> _SoughtMarkers | None:
+    if path is None:
+        return None
+    from vsgraphs.markers import MarkerDetector, load_markers
+
+    registry = load_markers(path)
+    return _SoughtMarkers(registry, MarkerDetector(registry, sequence.camera))
+
+
+def _markers_beside_tracking(slam: Any, sought: _SoughtMarkers | None, config: Any) -> KeyframeMarkers | None:
+    if sought is None:
+        return None
+    from vsgraphs.markers import KeyframeMarkers
+
+    return KeyframeMarkers(slam, sought.detector, beside=not _repeatable(config))
+
+
+def _marker_outcome(
+    request: RunRequest, sought: _SoughtMarkers | None, search: KeyframeMarkers | None
+) -> MarkerOutcome | None:
+    if sought is None or search is None:
+        return None
+    return MarkerOutcome(str(request.markers), sought.registry, search)
+
+
+def _repeatable(config: Any) -> bool:
+    return config.get("system.execution") == "serial" or bool(config.get("system.replay"))
 
 
 def _drain(
-    segmentation: KeyframeSegmentation | None, limit_s: float, stop: Callable[[], bool] = lambda: False
+    segmentation: KeyframeSegmentation | None,
+    markers: KeyframeMarkers | None,
+    limit_s: float,
+    stop: Callable[[], bool],
 ) -> None:
-    if segmentation is None:
-        return
+    """What waits for a segmenter and for the search for markers; a keyframe's search takes milliseconds."""
+    try:
+        if segmentation is not None:
+            _drain_segmentation(segmentation, limit_s, stop)
+    finally:
+        if markers is not None:
+            markers.finish(limit_s)
+
+
+def _drain_segmentation(segmentation: KeyframeSegmentation, limit_s: float, stop: Callable[[], bool]) -> None:
     waiting = segmentation.waiting
     if waiting and limit_s:
         print(

@@ -133,7 +133,7 @@ def _doors(graph: SceneGraph) -> list[Json]:
         }
         label = _OBJECT_CLASSES.index("doorway")
         attributes = object_attributes(
-            f"{door.kind} {door.id}", door.center, label, CLASS_COLOURS["door"], details=details
+            door.name or f"{door.kind} {door.id}", door.center, label, CLASS_COLOURS["door"], details=details
         )
         rows.append(node_row("D", door.id, _OBJECTS, attributes))
     return rows
@@ -146,6 +146,8 @@ def _markers(graph: SceneGraph) -> list[Json]:
             "aruco_id": marker.id,
             "size_m": rounded(marker.size_m),
             "observed_by": marker.observed_by,
+            "room": marker.room,
+            "door": marker.door,
         }
         name, label = marker.name or f"marker {marker.id}", _OBJECT_CLASSES.index("marker")
         position = marker.world_from_marker[:3, 3]

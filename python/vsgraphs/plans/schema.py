@@ -74,6 +74,19 @@ POSTER = Table(
     },
     ("room", "wall", "along"),
 )
+MARKER = Table(
+    "MarkerPlan",
+    {
+        "id": "whole",
+        "room": "text",
+        "wall": "whole",
+        "along": "number",
+        "z": "number",
+        "size_m": "number",
+    },
+    ("id", "room", "wall", "along"),
+    {"size_m": "size"},
+)
 BOX = Table(
     "BoxPlan",
     {
@@ -142,6 +155,7 @@ PLAN = Table(
         "doors": [DOOR],
         "windows": [WINDOW],
         "posters": [POSTER],
+        "markers": [MARKER],
         "boxes": [BOX],
         "stairs": [STAIRS],
         "path": PATH,

@@ -47,6 +47,7 @@ def _references(graph: SceneGraph) -> Iterator[_Reference]:
         yield from ((f"door {door.id}", "rooms", room) for room in door.rooms)
     for marker in graph.markers.values():
         yield f"marker {marker.id}", "rooms", marker.room
+        yield f"marker {marker.id}", "doors", marker.door
         yield from ((f"marker {marker.id}", "keyframes", k) for k in marker.observed_by)
     for place in graph.places.values():
         yield f"place {place.id}", "rooms", place.room

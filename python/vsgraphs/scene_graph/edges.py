@@ -21,7 +21,7 @@ FACTORS: dict[str, str | None] = {
     "ground_of": None,  # ground -> room
     "belongs_to": "floor_centroid",  # room -> floor
     "door": None,  # room - room, through `via`
-    "names": None,  # marker -> room
+    "names": None,  # marker -> room or door
 }
 SYMMETRIC = frozenset({"parallel", "perpendicular", "other_face", "door"})
 NODE_KINDS = ("keyframe", "plane", "room", "floor", "door", "marker", "place")
@@ -63,7 +63,7 @@ def edges_of(graph: SceneGraph, pairs: Iterable[Mapping[str, Any]] = ()) -> list
     pairs: {"planes": [a, b], "relation": "parallel" | "perpendicular" | "wall_perpendicular_to_ground"}, of
     the last one the wall first.
     """
-    edges = [*_observations(graph), *_walls(graph), *_rooms(graph)]
+    edges = [*_observations(graph), *sights_and_names_of_markers(graph), *_walls(graph), *_rooms(graph)]
     for pair in pairs:
         relation, (a, b) = str(pair["relation"]), map(int, pair["planes"])
         if relation in SYMMETRIC:
@@ -85,11 +85,18 @@ def _observations(graph: SceneGraph) -> Iterator[Edge]:
     for plane in graph.planes.values():
         for keyframe in plane.observed_by:
             yield _edge("observes_plane", node_key("keyframe", keyframe), node_key("plane", plane.id))
+
+
+def sights_and_names_of_markers(graph: SceneGraph) -> Iterator[Edge]:
+    """The edges at markers. A marker without a name names nothing."""
     for marker in graph.markers.values():
+        key = node_key("marker", marker.id)
         for keyframe in marker.observed_by:
-            yield _edge("observes_marker", node_key("keyframe", keyframe), node_key("marker", marker.id))
-        if marker.room is not None:
-            yield _edge("names", node_key("marker", marker.id), node_key("room", marker.room))
+            yield _edge("observes_marker", node_key("keyframe", keyframe), key)
+        if marker.name and marker.door is not None:
+            yield _edge("names", key, node_key("door", marker.door))
+        elif marker.name and marker.room is not None:
+            yield _edge("names", key, node_key("room", marker.room))
 
 
 def _walls(graph: SceneGraph) -> Iterator[Edge]:

@@ -7,7 +7,7 @@ one means that none was found. The schema lies beside this file (scene_graph.sch
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
@@ -119,8 +119,10 @@ def _encode(value: Any) -> Any:
 
 
 def _decode(kind: type, row: dict[str, Any]) -> Any:
-    values = {field.name: row[field.name] for field in fields(kind)}
-    for field in fields(kind):
+    # What came to version 1 later has a default and may be absent.
+    present = [field for field in fields(kind) if field.name in row or field.default is MISSING]
+    values = {field.name: row[field.name] for field in present}
+    for field in present:
         value, annotation = values[field.name], str(field.type)
         if annotation == "Array":
             array = np.array(value, dtype=np.float64)

@@ -47,7 +47,11 @@ def graph_from_map(raw: Row, keyframes: tuple[Any, Any, Any]) -> SceneGraph:
     graph.rooms = {row["id"]: _room(row, mover) for row in _rows(raw, "rooms")}
     graph.floors = {row["id"]: _floor(row, mover) for row in _rows(raw, "floors")}
     graph.doors = {row["id"]: _door(row, mover) for row in _rows(raw, "doors")}
-    graph.markers = {row["id"]: _marker(row, mover, known) for row in _rows(raw, "markers")}
+    graph.markers = {
+        row["id"]: _marker(row, mover, known)
+        for row in _rows(raw, "markers")
+        if not row.get("in_two_places", False)  # nobody knows where it is
+    }
     graph.places = {row["id"]: _place(row, mover) for row in _rows(raw, "places")}
     check_references(graph, "the map")
     graph.edges = edges_of(graph, raw.get("wall_pairs") or [])
@@ -137,6 +141,7 @@ def _door(row: Row, mover: _Mover) -> DoorNode:
         height_m=_number(row.get("height_m")),
         normal=mover.direction(row["normal"], f"{what}: normal"),
         kind=str(row.get("kind") or "door"),
+        name=str(row.get("name") or ""),
     )
 
 
@@ -149,6 +154,7 @@ def _marker(row: Row, mover: _Mover, keyframes: set[int]) -> MarkerNode:
         size_m=float(row["size_m"]),
         observed_by=_ids(set(map(int, row.get("observed_by", ()))) & keyframes),
         room=_id(row.get("room")),
+        door=_id(row.get("door")),
     )
 
 

@@ -82,7 +82,7 @@ class DoorNode:
     """An opening between two rooms; the second is None while nobody has seen what lies behind it.
 
     center: (3,) middle of the threshold. normal: (3,) horizontal unit vector through the opening.
-    kind: "door" (with a leaf or frame) or "passage".
+    kind: "door" (with a leaf or frame) or "passage". name: by a marker; empty: none.
     """
 
     id: int
@@ -92,11 +92,14 @@ class DoorNode:
     height_m: float | None
     normal: Array
     kind: str
+    name: str = ""
 
 
 @dataclass(eq=False)
 class MarkerNode:
-    """An ArUco marker. id: the printed one. world_from_marker: (4, 4), z out of the paper."""
+    """An ArUco marker. id: the printed one. world_from_marker: (4, 4), x to the right of who reads it, y up,
+    z out of the paper. name: of what it names, empty: nothing. room: where it hangs; door: which it names.
+    """
 
     id: int
     name: str
@@ -104,6 +107,7 @@ class MarkerNode:
     size_m: float
     observed_by: list[int]
     room: int | None
+    door: int | None = None
 
 
 @dataclass(eq=False)
