@@ -40,6 +40,12 @@ class Map {
   // The living keyframe that stands for `pose`'s anchor now, and the pose relative to it.
   std::optional<AnchoredPose> reanchor(AnchoredPose pose) const;
 
+  // The keyframe that was made of a frame; an invalid id if there is none. Newest first: cheap for recent frames.
+  KeyframeId keyframe_of_frame(std::int64_t frame_index) const;
+
+  // The room a point of the world is in; no_room outside all that were found.
+  RoomNumber room_at(const Eigen::Vector3d& point_in_world) const;
+
   // The patch behind an observation, whether its keyframe lives or is retired; nullptr if there is none.
   const SurfacePatch* patch(const PlaneObservation& observation) const;
 

@@ -6,6 +6,7 @@
 // time it has handed out a copy. No reference counts are read, so there is nothing to race on.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <memory>
@@ -78,7 +79,8 @@ class Table {
   void insert_at(IdType id, Value value) {
     VSG_INVARIANT(id.valid() && id.index <= slots_);
     if (id.index == slots_) {
-      if (slots_ % chunk_size == 0) chunks_.push_back(std::make_shared<Chunk>(epoch_));
+      if (id.index / chunk_size >= chunks_.size()) chunks_.resize(id.index / chunk_size + 1);
+      if (!chunks_[id.index / chunk_size]) chunks_[id.index / chunk_size] = std::make_shared<Chunk>(epoch_);
       ++slots_;
     } else {
       auto position = free_.begin();
@@ -93,6 +95,29 @@ class Table {
     slot.redirect = {};
     slot.value = std::move(value);
     ++size_;
+  }
+
+  // New slots get indices from `index` on, if they have not come that far; what is passed over costs a null pointer per
+  // chunk. Slots that are free already are used as ever.
+  void start_at(std::uint32_t index) { slots_ = std::max(slots_, index); }
+
+  // Takes in all of a table of which no index was ever in use here, ids and trails included. Chunks are shared where
+  // only one of the two has any. Cost: one step per chunk.
+  void absorb(const Table& other) {
+    if (chunks_.size() < other.chunks_.size()) chunks_.resize(other.chunks_.size());
+    // Later than the epoch of any chunk of either: none is written in place.
+    epoch_ = std::max(epoch_, other.epoch_) + 1;
+    for (std::size_t c = 0; c < other.chunks_.size(); ++c) {
+      if (!other.chunks_[c]) continue;
+      if (!chunks_[c]) {
+        chunks_[c] = other.chunks_[c];
+      } else {
+        take_over(*other.chunks_[c], static_cast<std::uint32_t>(c) * chunk_size);
+      }
+    }
+    free_.insert(free_.end(), other.free_.begin(), other.free_.end());
+    slots_ = std::max(slots_, other.slots_);
+    size_ += other.size_;
   }
 
   // nullptr like find(); the value may be changed through the pointer until the next call that copies the table.
@@ -111,8 +136,8 @@ class Table {
   template <typename Visit>
   void for_each(Visit&& visit) const {
     for (std::uint32_t index = 0; index < slots_; ++index) {
-      const Slot& slot = *slot_of(index);
-      if (slot.alive) visit(IdType{index, slot.generation}, slot.value);
+      const Slot* slot = slot_of(index);
+      if (slot && slot->alive) visit(IdType{index, slot->generation}, slot->value);
     }
   }
 
@@ -133,7 +158,7 @@ class Table {
   };
 
   const Slot* slot_of(std::uint32_t index) const {
-    if (index >= slots_) return nullptr;
+    if (index >= slots_ || index / chunk_size >= chunks_.size() || !chunks_[index / chunk_size]) return nullptr;
     return &chunks_[index / chunk_size]->slots[index % chunk_size];
   }
   Slot& writable(std::uint32_t index) {
@@ -145,7 +170,17 @@ class Table {
     return chunk->slots[index % chunk_size];
   }
 
-  std::vector<std::shared_ptr<Chunk>> chunks_;
+  void take_over(const Chunk& chunk, std::uint32_t first_index) {
+    for (std::uint32_t i = 0; i < chunk_size; ++i) {
+      const Slot& slot = chunk.slots[i];
+      if (!slot.alive && slot.generation == 0 && !slot.redirect.valid()) continue;
+      Slot& mine = writable(first_index + i);
+      VSG_INVARIANT(!mine.alive);
+      mine = slot;
+    }
+  }
+
+  std::vector<std::shared_ptr<Chunk>> chunks_;  // null where no index was ever in use
   std::deque<std::uint32_t> free_;
   std::uint32_t slots_ = 0;
   std::uint32_t size_ = 0;

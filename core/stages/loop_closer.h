@@ -103,8 +103,8 @@ class LoopCloser {
   std::optional<KeyframeId> last_closed_;
 };
 
-// Brings the index up to the map: adds keyframes that are new, removes those that were culled. Linear in the keyframes when
-// there is nothing to do.
-void follow(const Map& map, PlaceIndex& places);
+// Brings the index up to the map: adds keyframes that are new, removes those that were culled. Whether there was anything to
+// do; linear in the keyframes where there was not.
+bool follow(const Map& map, PlaceIndex& places);
 
 }  // namespace vsgraphs

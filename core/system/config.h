@@ -13,6 +13,7 @@
 #include "core/stages/structure_builder.h"
 #include "core/stages/tracker.h"
 #include "core/vision/orb_extractor.h"
+#include "core/vision/place_index.h"
 
 namespace vsgraphs {
 
@@ -67,6 +68,7 @@ class Config {
   SceneBuilderOptions scene;
   StructureBuilderOptions structure;
   LoopCloserOptions loop;
+  PlaceIndexOptions places;
 
   // Throws InputError: unknown key (names the nearest), wrong type, out of range (names the range).
   void set(const std::string& key, const OptionValue& value);

@@ -33,12 +33,13 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
       scene_(config.scene, camera),
       structure_(config.structure),
       loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
+      places_(config.places),
       model_{camera, config.orb.pyramid().factor, config.mapper.sigma_px},
       closes_loops_(config.system.loop_closing),
       cell_(cell),
       spans_("local mapping"),
       scene_spans_("scene understanding") {
-  cell_.publish({snapshot_, 0});
+  publish();
 }
 
 void MapOwner::insert(const KeyframeRequest& request) {
@@ -78,7 +79,6 @@ void MapOwner::look_for_loop() {
   loop_edit_.reset();
   if (!closes_loops_ || !map_.keyframes().contains(newest_)) return;
   const Span span(&spans_, "look_for_loop");
-  follow(map_, places_);
   LoopReport report;
   loop_edit_ = loop_closer_.close(newest_, snapshot_, places_, report, &spans_);
 }
@@ -121,7 +121,13 @@ void MapOwner::apply(const MapEdit& edit, EditEvent event) {
   snapshot_ = map_.snapshot();
   event.hash = edit.hash();
   edits_.push_back(event);
-  cell_.publish({snapshot_, inserted_});
+  publish();
+}
+
+void MapOwner::publish() {
+  if (follow(*snapshot_, places_) || !published_places_)
+    published_places_ = std::make_shared<const PlaceIndex>(places_);
+  cell_.publish({snapshot_, inserted_, published_places_});
 }
 
 }  // namespace vsgraphs

@@ -21,6 +21,7 @@ class SnapshotCell {
   struct Content {
     Snapshot snapshot;
     std::int64_t inserted = 0;  // keyframe requests that are in the snapshot
+    std::shared_ptr<const PlaceIndex> places;  // of the snapshot's keyframes
   };
   void publish(Content content);
   Content take() const;
@@ -66,6 +67,7 @@ class MapOwner {
 
  private:
   void apply(const MapEdit& edit, EditEvent event);
+  void publish();
 
   Map map_;
   Snapshot snapshot_;
@@ -74,6 +76,7 @@ class MapOwner {
   StructureBuilder structure_;
   LoopCloser loop_closer_;
   PlaceIndex places_;
+  std::shared_ptr<const PlaceIndex> published_places_;
   std::optional<MapEdit> loop_edit_;
   int loops_ = 0;
   MeasurementModel model_;

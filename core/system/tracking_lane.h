@@ -21,7 +21,7 @@ class TrackingLane {
     {
       const Span span(&spans_, "track");
       result =
-          tracker_.track(frame, content.snapshot, static_cast<int>(requested_ - content.inserted), &spans_);
+          tracker_.track(frame, {{content.snapshot, content.places}, {}}, static_cast<int>(requested_ - content.inserted), &spans_);
     }
     frames_.push_back({frame.index, frame.timestamp_s, content.snapshot->version()});
     if (result.keyframe_request) ++requested_;
