@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "core/map/map.h"
+
 namespace vsgraphs {
 
 namespace {
@@ -163,6 +165,30 @@ class Fnv1a {
   void operator()(const MoveStructureNodes& op) {
     for (const Eigen::Vector3d& node : op.rooms) matrix(node);
     for (const Eigen::Vector3d& node : op.floors) matrix(node);
+  }
+
+  void operator()(const OpenMap& op) {
+    word(op.first.keyframe);
+    word(op.first.landmark);
+    word(op.first.plane);
+    word(op.version);
+  }
+  void operator()(const AbsorbMap& op) {
+    pose(op.world_from_other);
+    op.other->keyframes().for_each([this](KeyframeId k, const Keyframe& keyframe) {
+      id(k);
+      pose(keyframe.world_from_camera);
+    });
+    op.other->landmarks().for_each([this](LandmarkId l, const Landmark& landmark) {
+      id(l);
+      matrix(landmark.point_in_world);
+      word(landmark.observations.size());
+    });
+    op.other->planes().for_each([this](PlaneId p, const MappedPlane& mapped) {
+      id(p);
+      plane(mapped.plane);
+      word(mapped.observations.size());
+    });
   }
 
  private:

@@ -34,6 +34,8 @@ class Map {
   // Empty before rooms are sought.
   const FoundStructure& structure() const { return *structure_; }
   std::uint64_t version() const { return version_; }
+  // Behind every id that was ever in use here; a multiple of the tables' chunks.
+  FirstIds unused_ids() const;
 
   // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
   std::optional<Se3> resolve(const AnchoredPose& pose) const;
@@ -88,6 +90,8 @@ class Map {
   void apply_one(const SetUp& op);
   void apply_one(const SetStructure& op);
   void apply_one(const MoveStructureNodes& op);
+  void apply_one(const OpenMap& op);
+  void apply_one(const AbsorbMap& op);
   // Rooms and floors that used a plane use what it was merged into, or do without it.
   void relink_structure(PlaneId gone, PlaneId into);
   void detach(LandmarkId landmark, const Observation& observation);

@@ -158,7 +158,8 @@ class Table {
   };
 
   const Slot* slot_of(std::uint32_t index) const {
-    if (index >= slots_ || index / chunk_size >= chunks_.size() || !chunks_[index / chunk_size]) return nullptr;
+    if (index >= slots_ || index / chunk_size >= chunks_.size() || !chunks_[index / chunk_size])
+      return nullptr;
     return &chunks_[index / chunk_size]->slots[index % chunk_size];
   }
   Slot& writable(std::uint32_t index) {

@@ -38,9 +38,9 @@ class TwoRooms : public ::testing::Test {
   }
   std::vector<KeyframeId> likely(int like, RoomNumber last_room) {
     const Map& map = world_.map;
-    return recovery_.likely_places({world_.map.snapshot(), std::make_shared<const PlaceIndex>(places_)},
-                                   *map.keyframes().find(world_.ids[static_cast<std::size_t>(like)])->features,
-                                   last_room);
+    return recovery_.likely_places(
+        {world_.map.snapshot(), std::make_shared<const PlaceIndex>(places_)},
+        *map.keyframes().find(world_.ids[static_cast<std::size_t>(like)])->features, last_room);
   }
   static bool second(KeyframeId id) { return id.index >= 30; }
 
@@ -61,7 +61,8 @@ TEST_F(TwoRooms, TheLastKnownRoomComesFirstAndTheOtherIsNotForgotten) {
     const auto found = likely(32, last);
     ASSERT_EQ(found.size(), 5U);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(second(found[i]), last == 7U) << i;
-    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](KeyframeId id) { return second(id) != (last == 7U); }));
+    EXPECT_TRUE(
+        std::any_of(found.begin(), found.end(), [&](KeyframeId id) { return second(id) != (last == 7U); }));
   }
 }
 

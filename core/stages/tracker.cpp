@@ -100,11 +100,11 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
   const Span span(trace, "relocalise");
   if (last_in) {
     const auto& last = *last_;
-    const auto pose = search_around(
-        *last_in->map,
-        recovery_.from_recent(*last_in->map, *now_.features, now_.index, *last.features, last.landmarks,
-                              *last_world_, last.pose.keyframe, matches_),
-        last.pose.keyframe);
+    const auto pose =
+        search_around(*last_in->map,
+                      recovery_.from_recent(*last_in->map, *now_.features, now_.index, *last.features,
+                                            last.landmarks, *last_world_, last.pose.keyframe, matches_),
+                      last.pose.keyframe);
     if (pose && believable(pose->world_from_camera, now_.timestamp_s - last.timestamp_s))
       return Found{last_in, *pose};
   }
@@ -137,8 +137,8 @@ std::optional<FramePose> Tracker::search_around(const Map& map, std::optional<Fr
     if (!guess) return std::nullopt;
     guess = refine_on_local_map(map, *guess, near, radius_px);
   }
-  const bool good = guess && guess->inliers >= options_.recovery.min_relocalisation_inliers &&
-                    surfaces_agree(map, *guess);
+  const bool good =
+      guess && guess->inliers >= options_.recovery.min_relocalisation_inliers && surfaces_agree(map, *guess);
   return good ? guess : std::nullopt;
 }
 
@@ -173,9 +173,9 @@ TrackedFrame Tracker::start() {
   last_measured_s_ = now_.timestamp_s;
   unmeasured_frames_ = 0;
   TrackedFrame result = report(TrackStatus::initialised, Se3{});
-  result.matches = static_cast<int>(
-      std::count_if(now_.features->features().begin(), now_.features->features().end(),
-                    [](const Feature& f) { return f.has_depth(); }));
+  result.matches =
+      static_cast<int>(std::count_if(now_.features->features().begin(), now_.features->features().end(),
+                                     [](const Feature& f) { return f.has_depth(); }));
   result.keyframe_request = make_request(now_.pose, true);
   last_ = now_;
   return result;

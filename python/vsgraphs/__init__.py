@@ -14,6 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vsgraphs._core import AtlasState as AtlasState
     from vsgraphs._core import Camera as Camera
     from vsgraphs._core import Config as Config
     from vsgraphs._core import Slam as Slam
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from vsgraphs.evaluate import evaluate as evaluate
     from vsgraphs.trajectory import Trajectory as Trajectory
 
-_CORE = ("Camera", "Config", "Slam", "Snapshot", "TrackResult")
+_CORE = ("AtlasState", "Camera", "Config", "Slam", "Snapshot", "TrackResult")
 _PYTHON = {
     "Calibration": "vsgraphs.datasets",
     "FrameError": "vsgraphs.errors",
@@ -39,6 +40,7 @@ _PYTHON = {
 }
 
 __all__ = [
+    "AtlasState",
     "Calibration",
     "Camera",
     "Config",
