@@ -25,10 +25,13 @@ class Map {
   using Keyframes = Table<KeyframeId, Keyframe, 8, false>;
   using Landmarks = Table<LandmarkId, Landmark, 64>;
   using Planes = Table<PlaneId, MappedPlane, 8>;
+  using RetiredKeyframes = Table<KeyframeId, RetiredKeyframe, 32, false>;
 
   const Keyframes& keyframes() const { return keyframes_; }
   const Landmarks& landmarks() const { return landmarks_; }
   const Planes& planes() const { return planes_; }
+  // An entry for every keyframe there ever was; without an anchor while it lives.
+  const RetiredKeyframes& retired_keyframes() const { return retired_; }
   // Unit vector against gravity; empty until ground and walls have agreed on it.
   const std::optional<Eigen::Vector3d>& up_in_world() const { return up_in_world_; }
   // Empty before rooms are sought.
@@ -62,6 +65,21 @@ class Map {
   void apply(const EditOperation& operation);
   // Does all of an edit's operations in order and counts one version up.
   void apply(const MapEdit& edit);
+
+  // Every part of the map under a name, as visit(name, part): what an archive holds. A new table is named here.
+  template <FieldsOf<Map> T>
+  friend void visit_tables(T& map, auto&& visit) {
+    visit("keyframes", map.keyframes_);
+    visit("retired_keyframes", map.retired_);
+    visit("landmarks", map.landmarks_);
+    visit("planes", map.planes_);
+    visit("up_in_world", map.up_in_world_);
+    FoundStructure structure = *map.structure_;
+    visit("structure", structure);
+    if constexpr (!std::is_const_v<T>)
+      map.structure_ = std::make_shared<const FoundStructure>(std::move(structure));
+    visit("version", map.version_);
+  }
 
   // A copy that nobody writes; the map goes on in fresh chunks. Only the owner may call this.
   Snapshot snapshot();
@@ -99,7 +117,7 @@ class Map {
   Keyframes keyframes_;
   Landmarks landmarks_;
   Planes planes_;
-  Table<KeyframeId, RetiredKeyframe, 32, false> retired_;
+  RetiredKeyframes retired_;
   std::optional<Eigen::Vector3d> up_in_world_;
   std::shared_ptr<const FoundStructure> structure_ = std::make_shared<const FoundStructure>();
   std::uint64_t version_ = 0;

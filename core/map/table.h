@@ -10,9 +10,11 @@
 #include <array>
 #include <deque>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/check.h"
+#include "core/base/fields.h"
 #include "core/map/ids.h"
 
 namespace vsgraphs {
@@ -141,6 +143,30 @@ class Table {
     }
   }
 
+  // The whole history that later ids depend on: generations, redirects, the order in which slots are used again.
+  template <FieldsOf<Table> T>
+  friend void visit_fields(T& table, auto& field) {
+    constexpr bool reads = std::remove_reference_t<decltype(field)>::reads;
+    std::uint64_t chunks = table.chunks_.size();
+    if constexpr (reads) {
+      table = Table();
+      chunks = field.count(1);
+    } else {
+      field(chunks);
+    }
+    for (std::uint64_t c = 0; c < chunks; ++c) {
+      if constexpr (reads) table.chunks_.emplace_back();
+      auto& chunk = table.chunks_[c];
+      bool used = chunk != nullptr;
+      field(used);
+      if (!used) continue;
+      if constexpr (reads) chunk = std::make_shared<Chunk>(table.epoch_);
+      for (auto& slot : std::conditional_t<reads, Chunk&, const Chunk&>(*chunk).slots) visit_slot(slot, field);
+    }
+    field(table.slots_, table.free_);
+    if constexpr (reads) field.require(table.count_and_check(), "slots that do not fit together");
+  }
+
   // One more than the largest index in use: the length of an array indexed by id.index.
   std::uint32_t index_bound() const { return slots_; }
 
@@ -156,6 +182,32 @@ class Table {
     std::uint64_t epoch;
     std::array<Slot, chunk_size> slots{};
   };
+
+  static void visit_slot(auto& slot, auto& field) {
+    field(slot.generation, slot.alive);
+    if (slot.alive)
+      field(slot.value);
+    else
+      field(slot.redirect);
+  }
+  // After reading: every living slot has an index that was given out, and what is free is there, dead, and free once.
+  bool count_and_check() {
+    constexpr std::uint32_t most_slots = 1U << 26;
+    if (slots_ > most_slots) return false;
+    size_ = 0;
+    for_each([this](IdType, const Value&) { ++size_; });
+    std::uint64_t alive = 0;
+    for (const auto& chunk : chunks_) {
+      for (std::uint32_t i = 0; chunk && i < chunk_size; ++i) alive += chunk->slots[i].alive ? 1 : 0;
+    }
+    std::vector<bool> free(slots_, false);
+    for (const std::uint32_t index : free_) {
+      const Slot* slot = slot_of(index);
+      if (!reuse_slots || !slot || slot->alive || free[index]) return false;
+      free[index] = true;
+    }
+    return alive == size_;
+  }
 
   const Slot* slot_of(std::uint32_t index) const {
     if (index >= slots_ || index / chunk_size >= chunks_.size() || !chunks_[index / chunk_size])
