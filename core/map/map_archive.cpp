@@ -25,13 +25,15 @@ const char* wrong_with_keyframes(const Map& map) {
 // Anchors must lead to a living keyframe: following them has no other end.
 const char* wrong_with_anchors(const Map& map) {
   const auto& retired = map.retired_keyframes();
-  if (retired.size() != map.keyframes().index_bound() || retired.index_bound() != retired.size())
-    return "retired keyframes that were never keyframes";
+  bool paired = retired.index_bound() == map.keyframes().index_bound();
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { paired = paired && retired.contains(id); });
+  if (!paired) return "keyframes without their place among the retired ones";
   std::vector<bool> leads(retired.index_bound(), false);
   std::vector<KeyframeId> way;
   for (std::uint32_t start = 0; start < retired.index_bound(); ++start) {
     way.clear();
     KeyframeId at = retired.at_index(start);
+    if (!at.valid()) continue;
     while (!map.keyframes().contains(at)) {
       const RetiredKeyframe* entry = retired.find(at);
       if (!entry || way.size() > retired.size()) return "a retired keyframe without a living anchor";

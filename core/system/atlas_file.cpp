@@ -49,6 +49,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
 SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes) {
   ArchiveReader archive(name, bytes, atlas_kind);
   SavedAtlas atlas;
+  atlas.format = archive.version();
   archive.read("origin", atlas.program, atlas.commit);
   archive.read("camera", atlas.camera);
   archive.read("configuration", atlas.configuration);
@@ -82,9 +83,19 @@ MapCounts count(const Map& map) {
           structure.rooms.size(), structure.floors.size(), structure.doors.size()};
 }
 
+MapCounts& MapCounts::operator+=(const MapCounts& other) {
+  keyframes += other.keyframes;
+  landmarks += other.landmarks;
+  planes += other.planes;
+  rooms += other.rooms;
+  floors += other.floors;
+  doors += other.doors;
+  return *this;
+}
+
 bool is_empty(const AtlasState& state) {
   for (const MapState& one : state.maps) {
-    if (!count(*one.map).empty()) return false;
+    if (one.map->keyframes().size() > 0) return false;
   }
   return true;
 }

@@ -14,15 +14,16 @@
 
 namespace vsgraphs {
 
+inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 1, "atlas"};
+
 struct SavedAtlas {
   AtlasState state;
   Camera camera;
   std::string configuration;           // lines "key: value", as `run --config` reads them
   std::string program, commit;         // version and commit of vsgraphs that made it
   std::vector<std::string> map_names;  // one per map, or none at all
+  std::uint32_t format = atlas_kind.version;  // of the file it was read from
 };
-
-inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 1, "atlas"};
 
 // Writes the file as a whole or not at all. Throws InputError naming it and the cause; an old file then stays. Any thread:
 // the state is values. Cost: 200 kB and 1 ms per keyframe, and one copy of it all in memory.
@@ -39,7 +40,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas);
 // How many of each there are.
 struct MapCounts {
   std::size_t keyframes = 0, landmarks = 0, planes = 0, rooms = 0, floors = 0, doors = 0;
-  bool empty() const { return keyframes == 0; }
+  MapCounts& operator+=(const MapCounts& other);
 };
 MapCounts count(const Map& map);
 // No keyframe in any map.
@@ -51,9 +52,8 @@ std::string configuration_text(const Config& config);
 std::string configured(const std::string& configuration, const std::string& key);
 
 // Whether a run with this configuration and camera can go on in the atlas. Throws InputError naming the file, both values
-// and the cure: images of another size, another lens, other image pyramids, or (`writes`: the run changes the map) a mode
-// that would leave walls or rooms of the atlas untended.
-void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config, const Camera& camera,
-                 bool writes);
+// and the cure: images of another size, another lens, other image pyramids, or (unless the run only localises) a mode that
+// would leave walls or rooms of the atlas untended.
+void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config, const Camera& camera);
 
 }  // namespace vsgraphs

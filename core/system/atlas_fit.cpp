@@ -72,8 +72,7 @@ std::string configured(const std::string& configuration, const std::string& key)
   return {};
 }
 
-void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config, const Camera& camera,
-                 bool writes) {
+void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config, const Camera& camera) {
   const Camera& made = atlas.camera;
   require_input(made.width == camera.width && made.height == camera.height,
                 name + ": was mapped with images of " + size_of(made) + " pixels, and this camera's have " +
@@ -89,7 +88,7 @@ void require_fit(const std::string& name, const SavedAtlas& atlas, const Config&
                                                     "; set it to the same");
   }
   const std::string mode = configured(atlas.configuration, "system.mode");
-  require_input(!writes || rank(config.system.mode) >= rank(mode),
+  require_input(config.system.localise_only || rank(config.system.mode) >= rank(mode),
                 name + ": was mapped with --mode " + mode + ", and --mode " + config.system.mode +
                     " would leave what that found untended; run with --mode " + mode + " or --localise-only");
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
@@ -45,6 +45,7 @@ class RunOutcome:
     map_colours: str = "image"  # of map.ply: image or class
     segmenter: str = "geometry"  # as the user named it
     segmentation: KeyframeSegmentation | None = None
+    warnings: list[str] = field(default_factory=list)  # of saving meanwhile
 
 
 def write_results(outcome: RunOutcome) -> dict[str, Any]:
@@ -162,6 +163,7 @@ def run_report(
         "warnings": [
             *outcome.sequence.warnings,
             *outcome.tally.warnings,
+            *outcome.warnings,
             *(outcome.segmentation.warnings if outcome.segmentation else ()),
             *statistics["warnings"],
         ],

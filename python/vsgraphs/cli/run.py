@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
+from vsgraphs.cli.atlas_files import AtlasFiles
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
 from vsgraphs.cli.progress import Progress
@@ -45,6 +46,9 @@ class RunRequest:
     config_file: Path | None = None
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
+    save_atlas: Path | None = None
+    load_atlas: Path | None = None
+    autosave_s: float | None = None
 
 
 def run_sequence(request: RunRequest) -> int:
@@ -55,6 +59,7 @@ def run_sequence(request: RunRequest) -> int:
     segmenter = _make_segmenter(request.segmenter)
     prepare_directory(request.out)
     _check_schedule_out(request)
+    atlas = AtlasFiles.of(request)
     frames = sequence.frames[: request.max_frames]
     print(sequence.describe(), flush=True)
     for line in sequence.warnings:
@@ -63,7 +68,7 @@ def run_sequence(request: RunRequest) -> int:
         from vsgraphs.compiled import core
 
         config = make_config(core(), request)
-        slam = core().Slam(config, sequence.camera)
+        slam = atlas.start(core(), config, sequence.camera)
         with Interrupt() as interrupt:
             progress = Progress(len(frames))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
@@ -71,7 +76,8 @@ def run_sequence(request: RunRequest) -> int:
             segmentation = _beside_tracking(slam, segmenter, config, progress)
             session = Session(segmentation or slam, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
-            failure = _attempt(session.run)
+            with atlas.saved_meanwhile(slam, progress.event):
+                failure = _attempt(session.run)
             loaded.close()
             progress.clear()
             if session.tally.interrupted:
@@ -82,7 +88,13 @@ def run_sequence(request: RunRequest) -> int:
             failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
             outcome.segmentation = segmentation
-            report = _write(outcome, failure)
+            outcome.warnings = atlas.warnings
+            unsaved, report = None, {}
+            try:
+                report = _write(outcome, failure)
+            finally:
+                unsaved = _attempt(lambda: atlas.save(slam))
+    failure = failure or unsaved
     if failure is not None:
         raise failure
     if not report["tracked"] and not session.tally.interrupted:
