@@ -94,12 +94,15 @@ void bind_atlas(nb::module_& m) {
           "  config, camera: those of the run.\n"
           "  map_names: one per map, or none.\n\n"
           "Raises InputError for names that are not one per map.")
-      .def("save", [](const SavedAtlas& atlas, const std::filesystem::path& path) { save_atlas(path, atlas); }, "path"_a, nb::call_guard<nb::gil_scoped_release>(),
-           "Writes the file as a whole or not at all: an old file stays until the new one is complete. Raises "
-           "InputError\n"
-           "naming the file and the cause. About 1 ms per keyframe.")
+      .def(
+          "save", [](const SavedAtlas& atlas, const std::filesystem::path& path) { save_atlas(path, atlas); },
+          "path"_a, nb::call_guard<nb::gil_scoped_release>(),
+          "Writes the file as a whole or not at all: an old file stays until the new one is complete. Raises "
+          "InputError\n"
+          "naming the file and the cause. About 1 ms per keyframe.")
       .def("info", &info_of, nb::sig("def info(self) -> dict[str, typing.Any]"),
-           "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors of "
+           "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors "
+           "of "
            "all maps;\n"
            "each: a list with the same counts and the name per map.")
       .def("snapshot", &snapshot_of, "number"_a = -1,
@@ -119,13 +122,15 @@ void bind_atlas(nb::module_& m) {
           "config"_a, "camera"_a, "name"_a = "the atlas",
           "Raises InputError, naming both values and the cure, if a run with this configuration and camera "
           "cannot go on in\n"
-          "the atlas: images of another size, another lens, another image pyramid, or a mode that would leave "
+          "the atlas: images of another size, another lens, another image pyramid, or a mode that would "
+          "leave "
           "walls or rooms\n"
           "untended. `name` stands for the atlas in the message.");
-  m.def("load_atlas", &load_atlas, "path"_a, nb::call_guard<nb::gil_scoped_release>(),
-        "Reads a saved atlas. Raises InputError, one line that names the file, where it cannot be read, is no "
-        "atlas, is\n"
-        "damaged or was saved by a newer version. About 1 ms per keyframe.");
+  m.def(
+      "load_atlas", &load_atlas, "path"_a, nb::call_guard<nb::gil_scoped_release>(),
+      "Reads a saved atlas. Raises InputError, one line that names the file, where it cannot be read, is no "
+      "atlas, is\n"
+      "damaged or was saved by a newer version. About 1 ms per keyframe.");
   m.def("require_writable", &require_writable, "path"_a,
         "Raises the InputError that saving a file of this name would raise; writes nothing that stays.");
 }

@@ -68,20 +68,22 @@ std::vector<std::span<const std::byte>> ArchiveWriter::finish() {
 
 ArchiveReader::ArchiveReader(std::string file, std::span<const std::byte> bytes, const ArchiveKind& kind)
     : file_(std::move(file)), what_(kind.what) {
-  const bool kindred =
-      bytes.size() >= kind.magic.size() && std::memcmp(bytes.data(), kind.magic.data(), kind.magic.size()) == 0;
-  require_input(kindred || bytes.empty(), file_ + ": is no vsgraphs " + what_ + "; give a file that vsgraphs saved");
+  const bool kindred = bytes.size() >= kind.magic.size() &&
+                       std::memcmp(bytes.data(), kind.magic.data(), kind.magic.size()) == 0;
+  require_input(kindred || bytes.empty(),
+                file_ + ": is no vsgraphs " + what_ + "; give a file that vsgraphs saved");
   if (bytes.size() < fixed_header) damaged("it ends too early");
   version_ = number_at<std::uint32_t>(bytes, 8);
   const std::size_t rest = number_at<std::uint32_t>(bytes, 12);
   if (rest > bytes.size() - fixed_header) damaged("it ends too early");
   const auto table = bytes.subspan(fixed_header, rest);
-  if (checksum(table, checksum(bytes.first(checked_header))) != number_at<std::uint64_t>(bytes, checked_header))
+  if (checksum(table, checksum(bytes.first(checked_header))) !=
+      number_at<std::uint64_t>(bytes, checked_header))
     damaged("its header has changed");
-  require_input(version_ <= kind.version,
-                file_ + ": was saved in version " + std::to_string(version_) + " of the " + what_ +
-                    " format, and this vsgraphs reads up to version " + std::to_string(kind.version) +
-                    "; update vsgraphs");
+  require_input(version_ <= kind.version, file_ + ": was saved in version " + std::to_string(version_) +
+                                              " of the " + what_ +
+                                              " format, and this vsgraphs reads up to version " +
+                                              std::to_string(kind.version) + "; update vsgraphs");
   FieldReader reader(table, nullptr, [this](const std::string& what) { damaged("its header: " + what); });
   read_table(reader, bytes.subspan(fixed_header + rest));
 }

@@ -26,9 +26,9 @@ namespace vsgraphs {
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t start = 0xcbf29ce484222325ULL);
 
 struct ArchiveKind {
-  std::string_view magic;    // 8 characters
+  std::string_view magic;     // 8 characters
   std::uint32_t version = 1;  // the newest this program reads, and the one it writes
-  std::string_view what;     // for messages: "atlas"
+  std::string_view what;      // for messages: "atlas"
 };
 
 class ArchiveWriter {

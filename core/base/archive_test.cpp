@@ -148,8 +148,10 @@ TEST(Archive, SectionsThatLieAreErrorsOrValues) {
     for (const std::string& name : original.names()) {
       const auto section = original.section(name);
       Bytes bytes(section.begin(), section.end());
-      if (name != "number") bytes[rng.index(static_cast<std::uint32_t>(bytes.size()))] = static_cast<std::byte>(rng.next());
-      if (rng.index(10) == 0 && name == "tree") bytes.resize(rng.index(static_cast<std::uint32_t>(bytes.size())));
+      if (name != "number")
+        bytes[rng.index(static_cast<std::uint32_t>(bytes.size()))] = static_cast<std::byte>(rng.next());
+      if (rng.index(10) == 0 && name == "tree")
+        bytes.resize(rng.index(static_cast<std::uint32_t>(bytes.size())));
       forged.add_bytes(name, std::move(bytes));
     }
     const Bytes bytes = joined(forged.finish());
@@ -173,7 +175,8 @@ TEST(Archive, ANewerVersionIsSaidAndAnOlderOneTold) {
   ArchiveKind newer = kind;
   newer.version = 4;
   EXPECT_EQ(error_of(bytes_of(some_tree(), newer)),
-            "FILE: was saved in version 4 of the tree format, and this vsgraphs reads up to version 3; update vsgraphs");
+            "FILE: was saved in version 4 of the tree format, and this vsgraphs reads up to version 3; "
+            "update vsgraphs");
   ArchiveKind older = kind;
   older.version = 2;
   const Bytes bytes = bytes_of(some_tree(), older);

@@ -114,7 +114,7 @@ FileContent read_file(const std::filesystem::path& path) {
   };
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.ok()) fail(reason(errno));
-  struct stat status {};
+  struct stat status{};
   if (::fstat(file.number(), &status) != 0) fail(reason(errno));
   if (!S_ISREG(status.st_mode)) fail("it is no ordinary file");
   FileContent content;

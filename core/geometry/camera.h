@@ -76,8 +76,10 @@ struct Camera {
 };
 template <FieldsOf<Camera> T>
 void visit_fields(T& v, auto& field) {
-  auto& [width, height, fx, fy, cx, cy, distortion, fps, depth_scale, depth_min_m, depth_max_m, invalid_depth, depth_noise] = v;
-  field(width, height, fx, fy, cx, cy, distortion, fps, depth_scale, depth_min_m, depth_max_m, invalid_depth, depth_noise);
+  auto& [width, height, fx, fy, cx, cy, distortion, fps, depth_scale, depth_min_m, depth_max_m, invalid_depth,
+         depth_noise] = v;
+  field(width, height, fx, fy, cx, cy, distortion, fps, depth_scale, depth_min_m, depth_max_m, invalid_depth,
+        depth_noise);
 }
 
 }  // namespace vsgraphs

@@ -40,8 +40,9 @@ void visit_fields(T& v, auto& field) {
   field(step_px, columns, rows, samples);
   if constexpr (std::remove_reference_t<decltype(field)>::reads) {
     const bool sized = columns >= 0 && rows >= 0 && step_px > 0 && columns < 65536 && rows < 65536;
-    field.require(sized && samples.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
-                  "a depth grid of another size than its samples");
+    field.require(
+        sized && samples.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+        "a depth grid of another size than its samples");
   }
 }
 

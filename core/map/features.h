@@ -66,7 +66,8 @@ class FeatureSet {
     field(v.features_, v.descriptors_, v.columns_, v.rows_);
     if constexpr (std::remove_reference_t<decltype(field)>::reads) {
       field.require(v.consistent(), "features that do not fit together");
-      v = FeatureSet(std::move(v.features_), std::move(v.descriptors_), v.columns_ * cell_px, v.rows_ * cell_px);
+      v = FeatureSet(std::move(v.features_), std::move(v.descriptors_), v.columns_ * cell_px,
+                     v.rows_ * cell_px);
     }
   }
 

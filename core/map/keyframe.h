@@ -40,7 +40,8 @@ struct Keyframe {
 };
 template <FieldsOf<Keyframe> T>
 void visit_fields(T& v, auto& field) {
-  auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks] = v;
+  auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks] =
+      v;
   field(frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks);
 }
 

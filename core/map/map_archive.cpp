@@ -71,7 +71,8 @@ const char* wrong_with_planes(const Map& map) {
       wrong = "a room without its walls";
   }
   for (const FoundFloor& floor : structure.floors) {
-    if (std::any_of(floor.grounds.begin(), floor.grounds.end(), missing)) wrong = "a floor without its ground";
+    if (std::any_of(floor.grounds.begin(), floor.grounds.end(), missing))
+      wrong = "a floor without its ground";
   }
   for (const Place& place : structure.places) {
     for (const std::uint32_t next : place.neighbours) {
@@ -90,7 +91,8 @@ void save_map(ArchiveWriter& archive, const std::string& prefix, const Map& map)
 Map load_map(const ArchiveReader& archive, const std::string& prefix) {
   Map map;
   visit_tables(map, [&](const char* name, auto& part) { archive.read(prefix + "/" + name, part); });
-  for (const auto check : {wrong_with_keyframes, wrong_with_anchors, wrong_with_landmarks, wrong_with_planes}) {
+  for (const auto check :
+       {wrong_with_keyframes, wrong_with_anchors, wrong_with_landmarks, wrong_with_planes}) {
     if (const char* wrong = check(map)) archive.damaged(wrong);
   }
   return map;

@@ -75,7 +75,8 @@ void add_points(Map& map) {
     keyframe.frame_index = 10 * i;
     keyframe.timestamp_s = 0.1 * i;
     keyframe.surface = some_grid(2.0F + 0.1F * static_cast<float>(i));
-    if (i == 2) keyframe.tracked_link = TrackedLink{keyframes[0], test::standing_at(0.2), Matrix6d::Identity()};
+    if (i == 2)
+      keyframe.tracked_link = TrackedLink{keyframes[0], test::standing_at(0.2), Matrix6d::Identity()};
     keyframes.push_back(test::add_keyframe(map, keyframe));
     map.apply(SetPatches{keyframes.back(), some_patches(3)});
   }
@@ -202,6 +203,32 @@ TEST(MapArchive, ASharedGridIsStoredOnce) {
   EXPECT_LT(bytes_of(map).size() - once, 400 + 8 * features);  // its pose and its landmarks alone
 }
 
+// As maps have it that were opened beside others: their ids begin behind those of the others.
+TEST(MapArchive, ATableThatStartsLateComesBack) {
+  using Numbers = Table<KeyframeId, int, 4>;
+  Numbers table;
+  table.start_at(40);
+  table.insert_at(table.next_id(), 1);
+  table.insert_at(table.next_id(), 2);
+  table.erase({40, 0}, {41, 0});
+  table.start_at(64);
+  ArchiveWriter archive(kind);
+  archive.add("table", table);
+  Bytes bytes;
+  for (const auto& part : archive.finish()) bytes.insert(bytes.end(), part.begin(), part.end());
+  EXPECT_LT(bytes.size(), 300U);  // nothing for what was passed over
+  Numbers back;
+  ArchiveReader("FILE", bytes, kind).read("table", back);
+  EXPECT_EQ(back.index_bound(), 64U);
+  EXPECT_EQ(back.size(), 1U);
+  EXPECT_EQ(*back.find({41, 0}), 2);
+  EXPECT_EQ(back.resolve({40, 0}), (KeyframeId{41, 0}));
+  EXPECT_EQ(back.find({3, 0}), nullptr);
+  EXPECT_EQ(back.next_id(), table.next_id());
+  back.insert_at(back.next_id(), 5);
+  EXPECT_EQ(back.next_id(), (KeyframeId{64, 0}));
+}
+
 // The content is forged under right checksums: the result is a map that can be walked through, or InputError.
 TEST(MapArchive, ForgedSectionsAreErrorsOrMaps) {
   const Bytes whole = bytes_of(full_map());
@@ -215,7 +242,8 @@ TEST(MapArchive, ForgedSectionsAreErrorsOrMaps) {
       Bytes bytes(original.section(name).begin(), original.section(name).end());
       if (name == original.names()[chosen] && !bytes.empty()) {
         // Small numbers, for those are what lengths, ids and flags are.
-        bytes[rng.index(static_cast<std::uint32_t>(bytes.size()))] = static_cast<std::byte>(rng.index(2) ? rng.index(8) : rng.next());
+        bytes[rng.index(static_cast<std::uint32_t>(bytes.size()))] =
+            static_cast<std::byte>(rng.index(2) ? rng.index(8) : rng.next());
       }
       forged.add_bytes(name, std::move(bytes));
     }

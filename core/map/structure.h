@@ -40,8 +40,10 @@ struct FoundRoom {
 };
 template <FieldsOf<FoundRoom> T>
 void visit_fields(T& v, auto& field) {
-  auto& [number, walls, ground, ceiling, polygon, centroid, ground_m, area_m2, height_m, kind, closed_share, partial, visited, neighbours] = v;
-  field(number, walls, ground, ceiling, polygon, centroid, ground_m, area_m2, height_m, kind, closed_share, partial, visited, neighbours);
+  auto& [number, walls, ground, ceiling, polygon, centroid, ground_m, area_m2, height_m, kind, closed_share,
+         partial, visited, neighbours] = v;
+  field(number, walls, ground, ceiling, polygon, centroid, ground_m, area_m2, height_m, kind, closed_share,
+        partial, visited, neighbours);
 }
 
 struct FoundDoor {

@@ -161,7 +161,8 @@ class Table {
       field(used);
       if (!used) continue;
       if constexpr (reads) chunk = std::make_shared<Chunk>(table.epoch_);
-      for (auto& slot : std::conditional_t<reads, Chunk&, const Chunk&>(*chunk).slots) visit_slot(slot, field);
+      for (auto& slot : std::conditional_t<reads, Chunk&, const Chunk&>(*chunk).slots)
+        visit_slot(slot, field);
     }
     field(table.slots_, table.free_);
     if constexpr (reads) field.require(table.count_and_check(), "slots that do not fit together");

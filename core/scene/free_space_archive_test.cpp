@@ -28,7 +28,8 @@ FreeSpace some_space() {
   FreeSpaceOptions options;
   options.voxel_m = 0.05;
   FreeSpace space(options);
-  for (std::uint32_t k = 0; k < 6; ++k) space.integrate({k, 0}, wall_at(2.0F + 0.3F * static_cast<float>(k)), at(0.5 * k));
+  for (std::uint32_t k = 0; k < 6; ++k)
+    space.integrate({k, 0}, wall_at(2.0F + 0.3F * static_cast<float>(k)), at(0.5 * k));
   space.remove({2, 0});
   return space;
 }

@@ -60,7 +60,8 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   }
   std::uint32_t maps = 0;
   archive.read("maps", maps, atlas.map_names);
-  if (!atlas.map_names.empty() && atlas.map_names.size() != maps) archive.damaged("maps and names differ in number");
+  if (!atlas.map_names.empty() && atlas.map_names.size() != maps)
+    archive.damaged("maps and names differ in number");
   load_shared_constants(archive);
   for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i)));
   return atlas;
@@ -79,7 +80,7 @@ SavedAtlas load_atlas(const std::filesystem::path& path) {
 
 MapCounts count(const Map& map) {
   const FoundStructure& structure = map.structure();
-  return {map.keyframes().size(),    map.landmarks().size(),     map.planes().size(),
+  return {map.keyframes().size(), map.landmarks().size(),  map.planes().size(),
           structure.rooms.size(), structure.floors.size(), structure.doors.size()};
 }
 

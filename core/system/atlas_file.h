@@ -19,9 +19,9 @@ inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 1, "atlas"};
 struct SavedAtlas {
   AtlasState state;
   Camera camera;
-  std::string configuration;           // lines "key: value", as `run --config` reads them
-  std::string program, commit;         // version and commit of vsgraphs that made it
-  std::vector<std::string> map_names;  // one per map, or none at all
+  std::string configuration;                  // lines "key: value", as `run --config` reads them
+  std::string program, commit;                // version and commit of vsgraphs that made it
+  std::vector<std::string> map_names;         // one per map, or none at all
   std::uint32_t format = atlas_kind.version;  // of the file it was read from
 };
 
@@ -54,6 +54,7 @@ std::string configured(const std::string& configuration, const std::string& key)
 // Whether a run with this configuration and camera can go on in the atlas. Throws InputError naming the file, both values
 // and the cure: images of another size, another lens, other image pyramids, or (unless the run only localises) a mode that
 // would leave walls or rooms of the atlas untended.
-void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config, const Camera& camera);
+void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config,
+                 const Camera& camera);
 
 }  // namespace vsgraphs

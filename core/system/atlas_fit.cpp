@@ -72,7 +72,8 @@ std::string configured(const std::string& configuration, const std::string& key)
   return {};
 }
 
-void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config, const Camera& camera) {
+void require_fit(const std::string& name, const SavedAtlas& atlas, const Config& config,
+                 const Camera& camera) {
   const Camera& made = atlas.camera;
   require_input(made.width == camera.width && made.height == camera.height,
                 name + ": was mapped with images of " + size_of(made) + " pixels, and this camera's have " +

@@ -136,11 +136,12 @@ bool PlaceIndex::restore(std::vector<PlaceSegment::Content> segments) {
   segments_.clear();
   for (PlaceSegment::Content& content : segments) {
     const auto by_key = [](const PlaceSignature& a, const PlaceSignature& b) { return a.key() < b.key(); };
-    const bool fits =
-        content.owners.size() == content.signatures.size() && !content.keyframes.empty() &&
-        std::is_sorted(content.signatures.begin(), content.signatures.end(), by_key) &&
-        std::all_of(content.owners.begin(), content.owners.end(), [&](auto o) { return known(o.keyframe()); }) &&
-        std::all_of(content.keyframes.begin(), content.keyframes.end(), [&](auto id) { return known(id.index); });
+    const bool fits = content.owners.size() == content.signatures.size() && !content.keyframes.empty() &&
+                      std::is_sorted(content.signatures.begin(), content.signatures.end(), by_key) &&
+                      std::all_of(content.owners.begin(), content.owners.end(),
+                                  [&](auto o) { return known(o.keyframe()); }) &&
+                      std::all_of(content.keyframes.begin(), content.keyframes.end(),
+                                  [&](auto id) { return known(id.index); });
     if (!fits) return false;
     segments_.push_back(std::make_shared<const PlaceSegment>(std::move(content)));
   }

@@ -75,7 +75,9 @@ def run(
     load_atlas: Annotated[Path | None, typer.Option(help="Go on in the maps of this file.")] = None,
     localise_only: Annotated[
         bool,
-        typer.Option("--localise-only", help="Only locate the camera in --load-atlas; the maps stay as they are."),
+        typer.Option(
+            "--localise-only", help="Only locate the camera in --load-atlas; the maps stay as they are."
+        ),
     ] = False,
     autosave: Annotated[
         float | None,
