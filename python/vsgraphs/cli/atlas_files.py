@@ -46,7 +46,7 @@ class AtlasFiles:
         return AtlasFiles(request.load_atlas, save_to, request.autosave_s)
 
     def start(self, core: Any, config: Any, camera: Any) -> Any:
-        """A Slam that starts from the loaded maps, if there are any. Raises InputError where they do not fit."""
+        """A Slam, started from the loaded maps if there are any. Raises InputError where they do not fit."""
         self._make = lambda slam: core.Atlas(slam.atlas_state(), config, camera)
         if self.load is None:
             return core.Slam(config, camera)

@@ -80,21 +80,10 @@ def run_sequence(request: RunRequest) -> int:
                 failure = _attempt(session.run)
             loaded.close()
             progress.clear()
-            if session.tally.interrupted:
-                print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
-            stopped = session.tally.interrupted or failure is not None
-            limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
-            draining = _attempt(lambda: _drain(segmentation, limit_s, interrupt.requested))
-            failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
+            failure = _end(slam, segmentation, session, interrupt, failure)
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
-            outcome.segmentation = segmentation
-            outcome.warnings = atlas.warnings
-            unsaved, report = None, {}
-            try:
-                report = _write(outcome, failure)
-            finally:
-                unsaved = _attempt(lambda: atlas.save(slam))
-    failure = failure or unsaved
+            outcome.segmentation, outcome.warnings = segmentation, atlas.warnings
+            report, failure = _leave(outcome, atlas, failure)
     if failure is not None:
         raise failure
     if not report["tracked"] and not session.tally.interrupted:
@@ -156,13 +145,30 @@ def _attempt(step: Callable[[], object]) -> Exception | None:
     return None
 
 
-def _write(outcome: RunOutcome, failure: Exception | None) -> dict[str, Any]:
-    try:
-        return write_results(outcome)
-    except Exception:
-        if failure is not None:  # the first trouble is the one to tell
-            raise failure from None
-        raise
+def _end(
+    slam: Any,
+    segmentation: KeyframeSegmentation | None,
+    session: Session,
+    interrupt: Interrupt,
+    failure: Exception | None,
+) -> Exception | None:
+    """Has the work under way ended; the first trouble is the one to tell."""
+    if session.tally.interrupted:
+        print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
+    stopped = session.tally.interrupted or failure is not None
+    draining = _attempt(lambda: _drain(segmentation, 0.0 if stopped else _DRAIN_LIMIT_S, interrupt.requested))
+    return failure or draining or _attempt(slam.finish)
+
+
+def _leave(
+    outcome: RunOutcome, atlas: AtlasFiles, failure: Exception | None
+) -> tuple[dict[str, Any], Exception | None]:
+    """Writes results and atlas, the one even where the other cannot be: run.json's content, the first trouble."""
+    report: dict[str, Any] = {}
+    for step in (lambda: report.update(write_results(outcome)), lambda: atlas.save(outcome.slam)):
+        trouble = _attempt(step)
+        failure = failure or trouble
+    return report, failure
 
 
 def make_config(core: Any, request: RunRequest) -> Any:
