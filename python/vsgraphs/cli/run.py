@@ -163,7 +163,7 @@ def _end(
 def _leave(
     outcome: RunOutcome, atlas: AtlasFiles, failure: Exception | None
 ) -> tuple[dict[str, Any], Exception | None]:
-    """Writes results and atlas, the one even where the other cannot be: run.json's content, the first trouble."""
+    """Writes results and atlas, the one even where the other cannot be: run.json's content, first trouble."""
     report: dict[str, Any] = {}
     for step in (lambda: report.update(write_results(outcome)), lambda: atlas.save(outcome.slam)):
         trouble = _attempt(step)
