@@ -9,7 +9,6 @@
 #include "core/vision/grey.h"
 #include "core/vision/matching.h"
 #include "core/vision/orb_extractor.h"
-#include "core/vision/place_candidates.h"
 #include "core/vision/place_index.h"
 #include "core/vision/test_images.h"
 
@@ -94,15 +93,6 @@ void BM_match_epipolar(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(match_epipolar(a, indices, b, indices, sideways, {}, 2, {}));
 }
 BENCHMARK(BM_match_epipolar)->Unit(benchmark::kMicrosecond);
-
-void BM_place_candidates(benchmark::State& state) {
-  Views views;
-  const FeatureSet a = views.extract(views.first), b = views.extract(views.second);
-  const std::vector<Place> places(100, Place{0, &b});
-  for (auto _ : state) benchmark::DoNotOptimize(find_place_candidates(a, places, {}));
-  state.counters["places"] = 100;
-}
-BENCHMARK(BM_place_candidates)->Unit(benchmark::kMillisecond);
 
 // What keyframe `number` of a walk sees: a thousand looks, of which the next one shares 19 in 20; two views differ in
 // one bit of eight.

@@ -32,5 +32,6 @@ NB_MODULE(_core, m) {
   vsgraphs::bind_camera(m);
   vsgraphs::bind_config(m);
   vsgraphs::bind_slam(m);
+  vsgraphs::bind_atlas(m);
   vsgraphs::bind_simulate(m);
 }

@@ -127,6 +127,10 @@ nb::dict statistics_of(const Slam& slam) {
   result["frames"] = s.frames;
   result["tracked"] = s.tracked;
   result["waited_s"] = s.waited_s;
+  result["maps"] = s.maps;
+  result["loops"] = s.loops;
+  result["merges"] = s.merges;
+  result["elsewhere"] = s.elsewhere;
   result["stages"] = stages;
   result["warnings"] = s.warnings;
   return result;
@@ -148,7 +152,8 @@ void bind_results(nb::module_& m) {
           "status", [](const TrackedFrame& f) { return to_string(f.status); },
           "waiting, initialised, ok, coasting, lost or relocalised")
       .def_prop_ro(
-          "index", [](const TrackedFrame& f) { return f.index; }, "the frame's number, from 0")
+          "index", [](const TrackedFrame& f) { return f.index; },
+          "the frame's number: from 0, or on from the last keyframe of an atlas")
       .def_prop_ro("tracked", [](const TrackedFrame& f) { return has_pose(f.status); })
       .def_prop_ro(
           "world_from_camera", &pose_or_none,
@@ -178,9 +183,29 @@ void bind_results(nb::module_& m) {
 
 void bind_slam(nb::module_& m) {
   bind_results(m);
+  nb::class_<AtlasState>(m, "AtlasState",
+                         "All maps of a run as values, for another run to start from; it never changes.")
+      .def(nb::init<>(), "No map at all.")
+      .def_prop_ro(
+          "maps", [](const AtlasState& atlas) { return atlas.maps.size(); },
+          "maps that are not joined, each in a world of its own")
+      .def_prop_ro(
+          "keyframes",
+          [](const AtlasState& atlas) {
+            std::size_t sum = 0;
+            for (const MapState& state : atlas.maps) sum += state.map->keyframes().size();
+            return sum;
+          },
+          "keyframes in all of them");
   nb::class_<Slam>(m, "Slam", "RGB-D SLAM: frames in, trajectory and map out.")
       .def(nb::init<const Config&, const Camera&>(), "config"_a, "camera"_a,
            "Raises InputError if the configuration or the camera make no sense.")
+      .def(nb::init<const Config&, const Camera&, const AtlasState&>(), "config"_a, "camera"_a, "atlas"_a,
+           "Starts from the maps of an earlier run: the camera begins lost and is looked for in them; where "
+           "nothing is\n"
+           "recognised it starts a map of its own, which is joined with them when a place is. With "
+           "system.localise_only the\n"
+           "maps stay as they are. Raises InputError as above, and for system.localise_only without a map.")
       .def(
           "track",
           [](Slam& slam, const AnyImage& rgb, const AnyImage& depth, double timestamp) {
@@ -257,6 +282,8 @@ void bind_slam(nb::module_& m) {
       .def(
           "snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
           "The newest map. Cheap, from any thread.")
+      .def("atlas_state", &Slam::atlas_state, nb::call_guard<nb::gil_scoped_release>(),
+           "All maps as known now; complete after finish(). Any thread; tracking is not held up.")
       .def("finish", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(),
            "Ends the work under way; track() is an error afterwards.")
       .def("close", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(), "The same as finish().")
@@ -267,7 +294,10 @@ void bind_slam(nb::module_& m) {
            "corrected "
            "by everything learned since.")
       .def("statistics", &statistics_of, nb::sig("def statistics(self) -> dict[str, typing.Any]"),
-           "frames, tracked, waited_s, warnings and stages; complete after finish().")
+           "frames, tracked, waited_s, maps (not joined), loops, merges, elsewhere (tracked frames in other "
+           "maps "
+           "than the one\n"
+           "given out), warnings and stages; complete after finish().")
       .def("trace", &trace_of, nb::sig("def trace(self) -> list[tuple[str, str, int, int, int]]"),
            "List of (lane, stage, begin_us, duration_us, frame); complete after finish(). Time is the "
            "monotonic "

@@ -78,6 +78,9 @@ class Slam:
         figures = dict.fromkeys(("median_ms", "p95_ms", "max_ms", "cpu_median_ms", "cpu_p95_ms"), 1.0)
         return {
             "waited_s": 0.5,
+            "maps": 1,
+            "loops": 2,
+            "merges": 0,
             "warnings": ["from the core"],
             "stages": {"track": {"count": self.seen, **figures}},
         }

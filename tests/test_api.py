@@ -82,6 +82,35 @@ def test_what_is_wrong_with_an_image_is_said(scene: Scene, camera: vsgraphs.Came
     assert slam.track(rgb, depth, 2.0).tracked  # nothing was harmed
 
 
+def test_a_run_starts_from_the_maps_of_another(scene: Scene, camera: vsgraphs.Camera) -> None:
+    config = vsgraphs.Config()
+    config.set("system.execution", "serial")
+    first = vsgraphs.Slam(config, camera)
+    for i in range(scene.frames):
+        first.track(scene.rgb(i), scene.depth(i), scene.stamp(i))
+    first.finish()
+    atlas = first.atlas_state()
+    assert atlas.maps == 1
+    assert atlas.keyframes == len(first.snapshot().keyframes()[0]) > 1
+
+    second = vsgraphs.Slam(config, camera, atlas=atlas)
+    result = second.track(scene.rgb(9), scene.depth(9), 0.0)
+    assert result.status == "relocalised"
+    assert result.index > 0, "frames are counted on"
+    assert result.world_from_camera[0, 3] == pytest.approx(scene.pose(9)[0, 3], abs=0.01)
+    second.finish()
+    statistics = second.statistics()
+    assert (statistics["maps"], statistics["loops"], statistics["merges"]) == (1, 0, 0)
+
+    config.set("system.localise_only", True)
+    with pytest.raises(vsgraphs.InputError, match="load an atlas"):
+        vsgraphs.Slam(config, camera)
+    located = vsgraphs.Slam(config, camera, atlas=atlas)
+    assert located.track(scene.rgb(4), scene.depth(4), 0.0).tracked
+    located.finish()
+    assert located.atlas_state().keyframes == atlas.keyframes
+
+
 def test_config_and_camera_mistakes(camera: vsgraphs.Camera) -> None:
     config = vsgraphs.Config()
     with pytest.raises(vsgraphs.InputError, match=r"system\.seed"):

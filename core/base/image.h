@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/fields.h"
+
 namespace vsgraphs {
 
 template <typename T>
@@ -38,5 +40,10 @@ struct Rgb {
   std::uint8_t r = 0, g = 0, b = 0;
   bool operator==(const Rgb&) const = default;
 };
+template <FieldsOf<Rgb> T>
+void visit_fields(T& v, auto& field) {
+  auto& [r, g, b] = v;
+  field(r, g, b);
+}
 
 }  // namespace vsgraphs

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/fields.h"
+
 namespace vsgraphs {
 
 // Standard deviation of depth: offset_m + scale * (z - onset_m)^2. Defaults: Kinect v1 (Nguyen, Izadi, Lovell,
@@ -29,6 +31,11 @@ struct DepthNoise {
   // Of the reading as a measurement of the colour feature's depth.
   double feature_sigma_m(double depth_m) const { return std::hypot(sigma_m(depth_m), alignment_m); }
 };
+template <FieldsOf<DepthNoise> T>
+void visit_fields(T& v, auto& field) {
+  auto& [offset_m, scale_per_m, onset_m, alignment_m] = v;
+  field(offset_m, scale_per_m, onset_m, alignment_m);
+}
 
 struct Camera {
   int width = 640;
@@ -67,5 +74,12 @@ struct Camera {
   // Throws InputError naming the first field that makes no sense (sizes, focal lengths, scales, ranges, NaN).
   void validate() const;
 };
+template <FieldsOf<Camera> T>
+void visit_fields(T& v, auto& field) {
+  auto& [width, height, fx, fy, cx, cy, distortion, fps, depth_scale, depth_min_m, depth_max_m, invalid_depth,
+         depth_noise] = v;
+  field(width, height, fx, fy, cx, cy, distortion, fps, depth_scale, depth_min_m, depth_max_m, invalid_depth,
+        depth_noise);
+}
 
 }  // namespace vsgraphs

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "core/base/fields.h"
 #include "core/geometry/se3.h"
 
 namespace vsgraphs {
@@ -40,5 +41,10 @@ struct AnchoredPlane {
     return {target_from_source.rotation() * normal, target_from_source * anchor, offset_m};
   }
 };
+template <FieldsOf<AnchoredPlane> T>
+void visit_fields(T& v, auto& field) {
+  auto& [normal, anchor, offset_m] = v;
+  field(normal, anchor, offset_m);
+}
 
 }  // namespace vsgraphs

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "core/base/fields.h"
+
 namespace vsgraphs {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -48,6 +50,11 @@ class Se3 {
   // The same transform with its rotation brought back to an exactly orthonormal matrix.
   Se3 normalized() const;
   bool finite() const { return rotation_.allFinite() && translation_.allFinite(); }
+
+  template <FieldsOf<Se3> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.rotation_, v.translation_);
+  }
 
  private:
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();

@@ -1,189 +1,34 @@
 #include "core/map/edit.h"
 
-#include <bit>
+#include <algorithm>
+#include <cstring>
+
+#include "core/base/field_writer.h"
+#include "core/map/edit_fields.h"
 
 namespace vsgraphs {
 
 namespace {
 
-class Fnv1a {
+// FNV-1a's step on words of eight bytes, the high half folded down after each. Shared constants by what they hold.
+class HashSink {
  public:
-  void word(std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte) {
-      hash_ = (hash_ ^ ((value >> (8 * byte)) & 0xff)) * 0x100000001b3ULL;
+  void bytes(const void* data, std::size_t count) {
+    const auto* at = static_cast<const char*>(data);
+    for (; count > 0; count -= std::min<std::size_t>(8, count), at += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, at, std::min<std::size_t>(8, count));
+      hash_ = (hash_ ^ word) * 0x100000001b3ULL;
+      hash_ ^= hash_ >> 32;
     }
   }
-  void number(double value) { word(std::bit_cast<std::uint64_t>(value)); }
-  template <typename Tag>
-  void id(const Id<Tag>& value) {
-    word((static_cast<std::uint64_t>(value.generation) << 32) | value.index);
-  }
-  template <typename Derived>
-  void matrix(const Eigen::MatrixBase<Derived>& m) {
-    for (Eigen::Index c = 0; c < m.cols(); ++c)
-      for (Eigen::Index r = 0; r < m.rows(); ++r) number(static_cast<double>(m(r, c)));
-  }
-  void pose(const Se3& pose) {
-    matrix(pose.rotation());
-    matrix(pose.translation());
-  }
-  void appearance(const Appearance& a) {
-    for (const std::uint64_t w : a.descriptor.words) word(w);
-    matrix(a.view_direction);
-    number(static_cast<double>(a.reference_distance_m));
-    word(a.reference_level);
+  template <typename T>
+  void shared(const std::shared_ptr<const T>& value) {
+    FieldWriter<HashSink> write(*this);
+    write(value != nullptr);
+    if (value) write(*value);
   }
   std::uint64_t value() const { return hash_; }
-
-  void plane(const AnchoredPlane& p) {
-    matrix(p.normal);
-    matrix(p.anchor);
-    number(p.offset_m);
-  }
-  void votes(const RoleVotes& votes) {
-    for (const float v : votes) number(static_cast<double>(v));
-  }
-  void observation(const PlaneObservation& o) {
-    id(o.keyframe);
-    word(o.patch);
-  }
-
-  void operator()(const AddKeyframe& op) {
-    id(op.id);
-    word(static_cast<std::uint64_t>(op.keyframe.frame_index));
-    number(op.keyframe.timestamp_s);
-    pose(op.keyframe.world_from_camera);
-    if (op.keyframe.tracked_link) {
-      id(op.keyframe.tracked_link->to);
-      pose(op.keyframe.tracked_link->to_from_camera);
-      matrix(op.keyframe.tracked_link->information);
-    }
-    for (const Descriptor& d : op.keyframe.features->descriptors()) {
-      for (const std::uint64_t w : d.words) word(w);
-    }
-  }
-  void operator()(const RemoveKeyframe& op) {
-    id(op.id);
-    id(op.anchor);
-  }
-  void operator()(const AddLandmark& op) {
-    id(op.id);
-    matrix(op.landmark.point_in_world);
-    appearance(op.landmark.appearance);
-  }
-  void operator()(const RemoveLandmark& op) { id(op.id); }
-  void operator()(const MergeLandmark& op) {
-    id(op.id);
-    id(op.into);
-  }
-  void operator()(const AddObservation& op) {
-    id(op.landmark);
-    id(op.observation.keyframe);
-    word(op.observation.feature);
-  }
-  void operator()(const RemoveObservation& op) {
-    id(op.landmark);
-    id(op.keyframe);
-  }
-  void operator()(const MoveKeyframe& op) {
-    id(op.id);
-    pose(op.world_from_camera);
-  }
-  void operator()(const MoveLandmark& op) {
-    id(op.id);
-    matrix(op.point_in_world);
-  }
-  void operator()(const SetAppearance& op) {
-    id(op.id);
-    appearance(op.appearance);
-  }
-  void operator()(const CountSightings& op) {
-    id(op.id);
-    word((static_cast<std::uint64_t>(op.visible) << 32) | op.found);
-  }
-  void operator()(const SetPatches& op) {
-    id(op.id);
-    word(op.patches->labelled);
-    for (const SurfacePatch& patch : op.patches->patches) {
-      plane(patch.plane);
-      matrix(patch.information);
-      votes(patch.votes);
-      word(static_cast<std::uint64_t>(patch.samples));
-      number(static_cast<double>(patch.area_m2));
-    }
-  }
-  void operator()(const AddPlane& op) {
-    id(op.id);
-    plane(op.plane.plane);
-    word(static_cast<std::uint64_t>(op.plane.role));
-    votes(op.plane.votes);
-  }
-  void operator()(const RemovePlane& op) { id(op.id); }
-  void operator()(const MergePlane& op) {
-    id(op.id);
-    id(op.into);
-  }
-  void operator()(const AddPlaneObservation& op) {
-    id(op.plane);
-    observation(op.observation);
-  }
-  void operator()(const RemovePlaneObservation& op) {
-    id(op.plane);
-    observation(op.observation);
-  }
-  void operator()(const MovePlane& op) {
-    id(op.id);
-    plane(op.plane);
-  }
-  void operator()(const ClassifyPlane& op) {
-    id(op.id);
-    word(static_cast<std::uint64_t>(op.role));
-    votes(op.votes);
-  }
-  void operator()(const PairFaces& op) {
-    id(op.id);
-    id(op.other);
-    number(op.thickness_m);
-  }
-  void operator()(const SetUp& op) { matrix(op.up_in_world); }
-  void operator()(const SetStructure& op) {
-    pose(op.structure->level_from_world);
-    for (const FoundRoom& room : op.structure->rooms) {
-      word(room.number);
-      for (const PlaneId wall : room.walls) id(wall);
-      for (const Eigen::Vector2d& corner : room.polygon) matrix(corner);
-    }
-    for (const FoundDoor& door : op.structure->doors) {
-      matrix(door.position);
-      number(door.width_m);
-    }
-    for (const FoundFloor& floor : op.structure->floors) matrix(floor.centroid);
-    for (const Place& place : op.structure->places) matrix(place.position);
-  }
-  void operator()(const MoveStructureNodes& op) {
-    for (const Eigen::Vector3d& node : op.rooms) matrix(node);
-    for (const Eigen::Vector3d& node : op.floors) matrix(node);
-  }
-  void operator()(const AddMarker& op) {
-    word(op.id.number);
-    number(op.marker.size_m);
-    pose(op.marker.world_from_marker);
-  }
-  void operator()(const RemoveMarker& op) { word(op.id.number); }
-  void operator()(const AddMarkerObservation& op) {
-    word(op.id.number);
-    id(op.observation.keyframe);
-    pose(op.observation.camera_from_marker);
-    matrix(op.observation.covariance);
-  }
-  void operator()(const RemoveMarkerObservations& op) {
-    word(op.id.number);
-    id(op.keyframe);
-  }
-  void operator()(const MoveMarker& op) {
-    word(op.id.number);
-    pose(op.world_from_marker);
-  }
 
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;
@@ -192,11 +37,12 @@ class Fnv1a {
 }  // namespace
 
 std::uint64_t MapEdit::hash() const {
-  Fnv1a hash;
-  hash.word(based_on);
+  HashSink hash;
+  FieldWriter<HashSink> write(hash);
+  write(based_on);
   for (const EditOperation& operation : operations) {
-    hash.word(operation.index());
-    std::visit(hash, operation);
+    write(static_cast<std::uint64_t>(operation.index()));
+    std::visit([&write](const auto& op) { write(op); }, operation);
   }
   return hash.value();
 }

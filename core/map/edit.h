@@ -2,7 +2,9 @@
 // operation it does; the owner repeats them on the one map. Edits can be hashed, so two runs can be compared.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -14,6 +16,8 @@
 #include "core/map/structure.h"
 
 namespace vsgraphs {
+
+class Map;
 
 struct AddKeyframe {
   KeyframeId id;
@@ -142,13 +146,32 @@ struct MoveMarker {
   MarkerId id;
   Se3 world_from_marker;
 };
+// Where new ids begin.
+struct FirstIds {
+  std::uint32_t keyframe = 0, landmark = 0, plane = 0;
+  static FirstIds later(const FirstIds& a, const FirstIds& b) {
+    return {std::max(a.keyframe, b.keyframe), std::max(a.landmark, b.landmark), std::max(a.plane, b.plane)};
+  }
+};
+// The map is the one being worked on from here: what is added gets ids behind those of all other maps, and versions go on
+// from the one that was worked on before.
+struct OpenMap {
+  FirstIds first;
+  std::uint64_t version = 0;
+};
+// Takes in all of another map, of which no id is in use here, moved by `world_from_other`. What was derived from it is not:
+// rooms and floors are to be sought again; its up direction counts only where this map has none.
+struct AbsorbMap {
+  std::shared_ptr<const Map> other;
+  Se3 world_from_other;
+};
 
 using EditOperation =
     std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
                  RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings, SetPatches,
                  AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation, MovePlane,
-                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, AddMarker, RemoveMarker,
-                 AddMarkerObservation, RemoveMarkerObservations, MoveMarker>;
+                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, OpenMap, AbsorbMap, AddMarker,
+                 RemoveMarker, AddMarkerObservation, RemoveMarkerObservations, MoveMarker>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

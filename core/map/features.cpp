@@ -29,6 +29,18 @@ FeatureSet::FeatureSet(std::vector<Feature> features, std::vector<Descriptor> de
   }
 }
 
+bool FeatureSet::consistent() const {
+  constexpr int most_cells = 1 << 12;  // a side: 65,536 px
+  const bool sized = columns_ >= 0 && rows_ >= 0 && columns_ <= most_cells && rows_ <= most_cells;
+  const bool housed = features_.empty() || (columns_ > 0 && rows_ > 0);
+  constexpr float most_px = 1e6F;
+  return sized && housed && features_.size() == descriptors_.size() && features_.size() <= 65535 &&
+         std::all_of(features_.begin(), features_.end(), [](const Feature& f) {
+           return std::abs(f.u) < most_px && std::abs(f.v) < most_px && std::isfinite(f.depth_m) &&
+                  std::abs(f.angle_rad) < 10 && f.level < 16;
+         });
+}
+
 // Undistorted features may lie a little outside the image; they live in the border cells.
 int FeatureSet::column(float u) const { return std::clamp(static_cast<int>(u) / cell_px, 0, columns_ - 1); }
 int FeatureSet::row(float v) const { return std::clamp(static_cast<int>(v) / cell_px, 0, rows_ - 1); }

@@ -5,8 +5,10 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/image.h"
 
 namespace vsgraphs {
@@ -16,6 +18,11 @@ struct Descriptor {
   std::array<std::uint64_t, 4> words{};
   bool operator==(const Descriptor&) const = default;
 };
+template <FieldsOf<Descriptor> T>
+void visit_fields(T& v, auto& field) {
+  auto& [words] = v;
+  field(words);
+}
 
 // Hamming distance, 0..256.
 inline int hamming(const Descriptor& a, const Descriptor& b) {
@@ -32,6 +39,11 @@ struct Feature {
   Rgb colour;
   bool has_depth() const { return depth_m > 0; }
 };
+template <FieldsOf<Feature> T>
+void visit_fields(T& feature, auto& field) {
+  auto& [u, v, depth_m, angle_rad, level, colour] = feature;
+  field(u, v, depth_m, angle_rad, level, colour);
+}
 
 class FeatureSet {
  public:
@@ -49,8 +61,20 @@ class FeatureSet {
   // (u, v) at levels min_level..max_level, in grid order (row by row of cells, ascending index within a cell).
   void in_area(float u, float v, float radius_px, int min_level, int max_level, std::vector<int>& out) const;
 
+  template <FieldsOf<FeatureSet> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.features_, v.descriptors_, v.columns_, v.rows_);
+    if constexpr (std::remove_reference_t<decltype(field)>::reads) {
+      field.require(v.consistent(), "features that do not fit together");
+      v = FeatureSet(std::move(v.features_), std::move(v.descriptors_), v.columns_ * cell_px,
+                     v.rows_ * cell_px);
+    }
+  }
+
  private:
   static constexpr int cell_px = 16;
+  // Whether the constructor can take what was read.
+  bool consistent() const;
   int column(float u) const;
   int row(float v) const;
 
@@ -60,5 +84,7 @@ class FeatureSet {
   std::vector<std::uint32_t> cell_begin_;  // columns*rows+1 offsets into cell_items_
   std::vector<std::uint16_t> cell_items_;
 };
+template <>
+inline constexpr const char* shared_name<FeatureSet> = "features";
 
 }  // namespace vsgraphs

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/base/fields.h"
+
 namespace vsgraphs {
 
 template <typename Tag>
@@ -16,6 +18,11 @@ struct Id {
 
   bool valid() const { return index != none; }
   auto operator<=>(const Id&) const = default;
+
+  template <FieldsOf<Id> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.index, v.generation);
+  }
 };
 
 using KeyframeId = Id<struct KeyframeTag>;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/geometry/se3.h"
 #include "core/map/depth_grid.h"
 #include "core/map/features.h"
@@ -20,6 +21,11 @@ struct TrackedLink {
   Se3 to_from_camera;
   Matrix6d information = Matrix6d::Zero();  // tangent on the right of to_from_camera
 };
+template <FieldsOf<TrackedLink> T>
+void visit_fields(T& v, auto& field) {
+  auto& [to, to_from_camera, information] = v;
+  field(to, to_from_camera, information);
+}
 
 struct Keyframe {
   std::int64_t frame_index = 0;
@@ -32,6 +38,12 @@ struct Keyframe {
   std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
 };
+template <FieldsOf<Keyframe> T>
+void visit_fields(T& v, auto& field) {
+  auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks] =
+      v;
+  field(frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks);
+}
 
 // What is left of a keyframe that was culled: where it stood, seen from a keyframe that stayed.
 struct RetiredKeyframe {
@@ -39,6 +51,11 @@ struct RetiredKeyframe {
   Se3 anchor_from_camera;
   std::shared_ptr<const KeyframeSurfaces> patches;  // planes go on being where it saw them
 };
+template <FieldsOf<RetiredKeyframe> T>
+void visit_fields(T& v, auto& field) {
+  auto& [anchor, anchor_from_camera, patches] = v;
+  field(anchor, anchor_from_camera, patches);
+}
 
 // A camera pose tied to a keyframe, so that corrections of the keyframe move it for free.
 struct AnchoredPose {

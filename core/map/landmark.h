@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/map/features.h"
 #include "core/map/ids.h"
 
@@ -14,6 +15,11 @@ struct Observation {
   std::uint16_t feature = 0;  // index into the keyframe's FeatureSet
   bool operator==(const Observation&) const = default;
 };
+template <FieldsOf<Observation> T>
+void visit_fields(T& v, auto& field) {
+  auto& [keyframe, feature] = v;
+  field(keyframe, feature);
+}
 
 // How a landmark looks, and from where it can be recognised.
 struct Appearance {
@@ -23,6 +29,11 @@ struct Appearance {
   std::uint8_t reference_level = 0;
   Rgb colour;
 };
+template <FieldsOf<Appearance> T>
+void visit_fields(T& v, auto& field) {
+  auto& [descriptor, view_direction, reference_distance_m, reference_level, colour] = v;
+  field(descriptor, view_direction, reference_distance_m, reference_level, colour);
+}
 
 struct Landmark {
   Eigen::Vector3d point_in_world = Eigen::Vector3d::Zero();
@@ -32,5 +43,10 @@ struct Landmark {
   std::uint32_t visible_count = 0;  // frames in which it should have been seen
   std::uint32_t found_count = 0;    // frames in which it was
 };
+template <FieldsOf<Landmark> T>
+void visit_fields(T& v, auto& field) {
+  auto& [point, appearance, observations, created_at_frame, visible_count, found_count] = v;
+  field(point, appearance, observations, created_at_frame, visible_count, found_count);
+}
 
 }  // namespace vsgraphs

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/polygon.h"
+
 namespace vsgraphs {
 
 std::optional<AnchoredPose> Map::reanchor(AnchoredPose pose) const {
@@ -17,6 +19,26 @@ std::optional<Se3> Map::resolve(const AnchoredPose& pose) const {
   const auto living = reanchor(pose);
   if (!living) return std::nullopt;
   return keyframes_.find(living->keyframe)->world_from_camera * living->keyframe_from_camera;
+}
+
+KeyframeId Map::keyframe_of_frame(std::int64_t frame_index) const {
+  for (std::uint32_t index = keyframes_.index_bound(); index-- > 0;) {
+    const KeyframeId id = keyframes_.at_index(index);
+    if (id.valid() && keyframes_.find(id)->frame_index == frame_index) return id;
+  }
+  return {};
+}
+
+RoomNumber Map::room_at(const Eigen::Vector3d& point_in_world) const {
+  constexpr double below_ground_m = 0.3, usual_height_m = 3.0;
+  const Eigen::Vector3d point = structure_->level_from_world * point_in_world;
+  for (const FoundRoom& room : structure_->rooms) {
+    const double above_m = point.z() - room.ground_m;
+    if (above_m > -below_ground_m && above_m < room.height_m.value_or(usual_height_m) &&
+        contains(room.polygon, point.head<2>()))
+      return room.number;
+  }
+  return no_room;
 }
 
 std::vector<std::pair<KeyframeId, int>> Map::covisible(KeyframeId id, int min_shared) const {

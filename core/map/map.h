@@ -26,21 +26,32 @@ class Map {
   using Keyframes = Table<KeyframeId, Keyframe, 8, false>;
   using Landmarks = Table<LandmarkId, Landmark, 64>;
   using Planes = Table<PlaneId, MappedPlane, 8>;
+  using RetiredKeyframes = Table<KeyframeId, RetiredKeyframe, 32, false>;
 
   const Keyframes& keyframes() const { return keyframes_; }
   const Landmarks& landmarks() const { return landmarks_; }
   const Planes& planes() const { return planes_; }
   const Markers& markers() const { return markers_; }
+  // An entry for every keyframe there ever was; without an anchor while it lives.
+  const RetiredKeyframes& retired_keyframes() const { return retired_; }
   // Unit vector against gravity; empty until ground and walls have agreed on it.
   const std::optional<Eigen::Vector3d>& up_in_world() const { return up_in_world_; }
   // Empty before rooms are sought.
   const FoundStructure& structure() const { return *structure_; }
   std::uint64_t version() const { return version_; }
+  // Behind every id that was ever in use here; a multiple of the tables' chunks.
+  FirstIds unused_ids() const;
 
   // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
   std::optional<Se3> resolve(const AnchoredPose& pose) const;
   // The living keyframe that stands for `pose`'s anchor now, and the pose relative to it.
   std::optional<AnchoredPose> reanchor(AnchoredPose pose) const;
+
+  // The keyframe that was made of a frame; an invalid id if there is none. Newest first: cheap for recent frames.
+  KeyframeId keyframe_of_frame(std::int64_t frame_index) const;
+
+  // The room a point of the world is in; no_room outside all that were found.
+  RoomNumber room_at(const Eigen::Vector3d& point_in_world) const;
 
   // The patch behind an observation, whether its keyframe lives or is retired; nullptr if there is none.
   const SurfacePatch* patch(const PlaneObservation& observation) const;
@@ -59,6 +70,22 @@ class Map {
   void apply(const EditOperation& operation);
   // Does all of an edit's operations in order and counts one version up.
   void apply(const MapEdit& edit);
+
+  // Every part of the map under a name, as visit(name, part): what an archive holds. A new table is named here.
+  template <FieldsOf<Map> T>
+  friend void visit_tables(T& map, auto&& visit) {
+    visit("keyframes", map.keyframes_);
+    visit("retired_keyframes", map.retired_);
+    visit("landmarks", map.landmarks_);
+    visit("planes", map.planes_);
+    visit("markers", map.markers_);
+    visit("up_in_world", map.up_in_world_);
+    FoundStructure structure = *map.structure_;
+    visit("structure", structure);
+    if constexpr (!std::is_const_v<T>)
+      map.structure_ = std::make_shared<const FoundStructure>(std::move(structure));
+    visit("version", map.version_);
+  }
 
   // A copy that nobody writes; the map goes on in fresh chunks. Only the owner may call this.
   Snapshot snapshot();
@@ -92,6 +119,9 @@ class Map {
   void apply_one(const AddMarkerObservation& op);
   void apply_one(const RemoveMarkerObservations& op);
   void apply_one(const MoveMarker& op);
+  void apply_one(const OpenMap& op);
+  void apply_one(const AbsorbMap& op);
+  void absorb_markers(const Map& other, const Se3& world_from_other);
   // Rooms and floors that used a plane use what it was merged into, or do without it.
   void relink_structure(PlaneId gone, PlaneId into);
   void detach(LandmarkId landmark, const Observation& observation);
@@ -100,7 +130,7 @@ class Map {
   Landmarks landmarks_;
   Planes planes_;
   Markers markers_;
-  Table<KeyframeId, RetiredKeyframe, 32, false> retired_;
+  RetiredKeyframes retired_;
   std::optional<Eigen::Vector3d> up_in_world_;
   std::shared_ptr<const FoundStructure> structure_ = std::make_shared<const FoundStructure>();
   std::uint64_t version_ = 0;

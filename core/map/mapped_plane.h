@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/map/ids.h"
 #include "core/map/surface_patch.h"
 
@@ -14,6 +15,11 @@ struct PlaneObservation {
   std::uint16_t patch = 0;  // index into its KeyframeSurfaces
   bool operator==(const PlaneObservation&) const = default;
 };
+template <FieldsOf<PlaneObservation> T>
+void visit_fields(T& v, auto& field) {
+  auto& [keyframe, patch] = v;
+  field(keyframe, patch);
+}
 
 struct MappedPlane {
   AnchoredPlane plane;  // in the world, towards the side that saw it
@@ -24,5 +30,10 @@ struct MappedPlane {
   PlaneId other_face;
   double thickness_m = 0;
 };
+template <FieldsOf<MappedPlane> T>
+void visit_fields(T& v, auto& field) {
+  auto& [plane, role, votes, observations, other_face, thickness_m] = v;
+  field(plane, role, votes, observations, other_face, thickness_m);
+}
 
 }  // namespace vsgraphs

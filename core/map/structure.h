@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/geometry/polygon.h"
 #include "core/geometry/se3.h"
 #include "core/map/ids.h"
@@ -19,6 +20,8 @@ using RoomNumber = std::uint32_t;
 inline constexpr RoomNumber no_room = 0xffffffffu;
 
 enum class RoomKind : std::uint8_t { room, corridor };
+template <>
+inline constexpr std::size_t enum_size<RoomKind> = 2;
 
 struct FoundRoom {
   RoomNumber number = no_room;
@@ -35,6 +38,13 @@ struct FoundRoom {
   bool visited = false;                // the camera has been inside
   std::vector<RoomNumber> neighbours;  // through openings, ascending
 };
+template <FieldsOf<FoundRoom> T>
+void visit_fields(T& v, auto& field) {
+  auto& [number, walls, ground, ceiling, polygon, centroid, ground_m, area_m2, height_m, kind, closed_share,
+         partial, visited, neighbours] = v;
+  field(number, walls, ground, ceiling, polygon, centroid, ground_m, area_m2, height_m, kind, closed_share,
+        partial, visited, neighbours);
+}
 
 struct FoundDoor {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // middle of the threshold, on the ground
@@ -44,6 +54,11 @@ struct FoundDoor {
   double thickness_m = 0;          // of the wall; 0: only one face is known
   std::array<RoomNumber, 2> rooms{no_room, no_room};
 };
+template <FieldsOf<FoundDoor> T>
+void visit_fields(T& v, auto& field) {
+  auto& [position, normal, width_m, height_m, thickness_m, rooms] = v;
+  field(position, normal, width_m, height_m, thickness_m, rooms);
+}
 
 struct FoundFloor {
   double ground_m = 0;
@@ -52,6 +67,11 @@ struct FoundFloor {
   std::vector<Polygon2> extent;                        // of its rooms; they do not overlap
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // mean of its rooms' centroids
 };
+template <FieldsOf<FoundFloor> T>
+void visit_fields(T& v, auto& field) {
+  auto& [ground_m, rooms, grounds, extent, centroid] = v;
+  field(ground_m, rooms, grounds, extent, centroid);
+}
 
 // A place to be: a point with free space around it. Edges lead over free ground.
 struct Place {
@@ -60,6 +80,11 @@ struct Place {
   RoomNumber room = no_room;              // no_room: in a doorway or outside all rooms
   std::vector<std::uint32_t> neighbours;  // indices, ascending
 };
+template <FieldsOf<Place> T>
+void visit_fields(T& v, auto& field) {
+  auto& [position, clearance_m, room, neighbours] = v;
+  field(position, clearance_m, room, neighbours);
+}
 
 struct FoundStructure {
   bool sought = false;           // false: nobody has looked for rooms yet
@@ -73,5 +98,10 @@ struct FoundStructure {
   // centroids (the paper's room centroid), which furniture may pull off the middle of its polygon.
   std::vector<Eigen::Vector3d> room_nodes, floor_nodes;
 };
+template <FieldsOf<FoundStructure> T>
+void visit_fields(T& v, auto& field) {
+  auto& [sought, rooms, doors, floors, places, next_number, level_from_world, room_nodes, floor_nodes] = v;
+  field(sought, rooms, doors, floors, places, next_number, level_from_world, room_nodes, floor_nodes);
+}
 
 }  // namespace vsgraphs

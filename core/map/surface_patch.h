@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/geometry/plane.h"
 
 namespace vsgraphs {
@@ -14,6 +15,8 @@ namespace vsgraphs {
 // What a surface is to the scene. `undecided`: not enough known yet.
 enum class SurfaceRole : std::uint8_t { undecided, wall, ground, ceiling, door, window, other };
 inline constexpr std::size_t surface_role_count = 7;
+template <>
+inline constexpr std::size_t enum_size<SurfaceRole> = surface_role_count;
 const char* to_string(SurfaceRole role);
 
 // Sums of confidences, by role.
@@ -30,10 +33,22 @@ struct SurfacePatch {
   float area_m2 = 0;
   RoleVotes votes{};  // of a segmenter; all zero without one
 };
+template <FieldsOf<SurfacePatch> T>
+void visit_fields(T& v, auto& field) {
+  auto& [plane, information, points, samples, area_m2, votes] = v;
+  field(plane, information, points, samples, area_m2, votes);
+}
 
 struct KeyframeSurfaces {
   std::vector<SurfacePatch> patches;
   bool labelled = false;  // a segmenter has had its say
 };
+template <>
+inline constexpr const char* shared_name<KeyframeSurfaces> = "patches";
+template <FieldsOf<KeyframeSurfaces> T>
+void visit_fields(T& v, auto& field) {
+  auto& [patches, labelled] = v;
+  field(patches, labelled);
+}
 
 }  // namespace vsgraphs

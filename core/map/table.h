@@ -6,12 +6,15 @@
 // time it has handed out a copy. No reference counts are read, so there is nothing to race on.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/check.h"
+#include "core/base/fields.h"
 #include "core/map/ids.h"
 
 namespace vsgraphs {
@@ -78,7 +81,8 @@ class Table {
   void insert_at(IdType id, Value value) {
     VSG_INVARIANT(id.valid() && id.index <= slots_);
     if (id.index == slots_) {
-      if (slots_ % chunk_size == 0) chunks_.push_back(std::make_shared<Chunk>(epoch_));
+      if (id.index / chunk_size >= chunks_.size()) chunks_.resize(id.index / chunk_size + 1);
+      if (!chunks_[id.index / chunk_size]) chunks_[id.index / chunk_size] = std::make_shared<Chunk>(epoch_);
       ++slots_;
     } else {
       auto position = free_.begin();
@@ -93,6 +97,29 @@ class Table {
     slot.redirect = {};
     slot.value = std::move(value);
     ++size_;
+  }
+
+  // New slots get indices from `index` on, if they have not come that far; what is passed over costs a null pointer per
+  // chunk. Slots that are free already are used as ever.
+  void start_at(std::uint32_t index) { slots_ = std::max(slots_, index); }
+
+  // Takes in all of a table of which no index was ever in use here, ids and trails included. Chunks are shared where
+  // only one of the two has any. Cost: one step per chunk.
+  void absorb(const Table& other) {
+    if (chunks_.size() < other.chunks_.size()) chunks_.resize(other.chunks_.size());
+    // Later than the epoch of any chunk of either: none is written in place.
+    epoch_ = std::max(epoch_, other.epoch_) + 1;
+    for (std::size_t c = 0; c < other.chunks_.size(); ++c) {
+      if (!other.chunks_[c]) continue;
+      if (!chunks_[c]) {
+        chunks_[c] = other.chunks_[c];
+      } else {
+        take_over(*other.chunks_[c], static_cast<std::uint32_t>(c) * chunk_size);
+      }
+    }
+    free_.insert(free_.end(), other.free_.begin(), other.free_.end());
+    slots_ = std::max(slots_, other.slots_);
+    size_ += other.size_;
   }
 
   // nullptr like find(); the value may be changed through the pointer until the next call that copies the table.
@@ -111,9 +138,34 @@ class Table {
   template <typename Visit>
   void for_each(Visit&& visit) const {
     for (std::uint32_t index = 0; index < slots_; ++index) {
-      const Slot& slot = *slot_of(index);
-      if (slot.alive) visit(IdType{index, slot.generation}, slot.value);
+      const Slot* slot = slot_of(index);
+      if (slot && slot->alive) visit(IdType{index, slot->generation}, slot->value);
     }
+  }
+
+  // The whole history that later ids depend on: generations, redirects, the order in which slots are used again.
+  template <FieldsOf<Table> T>
+  friend void visit_fields(T& table, auto& field) {
+    constexpr bool reads = std::remove_reference_t<decltype(field)>::reads;
+    std::uint64_t chunks = table.chunks_.size();
+    if constexpr (reads) {
+      table = Table();
+      chunks = field.count(1);
+    } else {
+      field(chunks);
+    }
+    for (std::uint64_t c = 0; c < chunks; ++c) {
+      if constexpr (reads) table.chunks_.emplace_back();
+      auto& chunk = table.chunks_[c];
+      bool used = chunk != nullptr;
+      field(used);
+      if (!used) continue;
+      if constexpr (reads) chunk = std::make_shared<Chunk>(table.epoch_);
+      for (auto& slot : std::conditional_t<reads, Chunk&, const Chunk&>(*chunk).slots)
+        visit_slot(slot, field);
+    }
+    field(table.slots_, table.free_);
+    if constexpr (reads) field.require(table.count_and_check(), "slots that do not fit together");
   }
 
   // One more than the largest index in use: the length of an array indexed by id.index.
@@ -132,8 +184,35 @@ class Table {
     std::array<Slot, chunk_size> slots{};
   };
 
+  static void visit_slot(auto& slot, auto& field) {
+    field(slot.generation, slot.alive);
+    if (slot.alive)
+      field(slot.value);
+    else
+      field(slot.redirect);
+  }
+  // After reading: every living slot has an index that was given out, and what is free is there, dead, and free once.
+  bool count_and_check() {
+    constexpr std::uint32_t most_slots = 1U << 26;
+    if (slots_ > most_slots) return false;
+    size_ = 0;
+    for_each([this](IdType, const Value&) { ++size_; });
+    std::uint64_t alive = 0;
+    for (const auto& chunk : chunks_) {
+      for (std::uint32_t i = 0; chunk && i < chunk_size; ++i) alive += chunk->slots[i].alive ? 1 : 0;
+    }
+    std::vector<bool> free(slots_, false);
+    for (const std::uint32_t index : free_) {
+      const Slot* slot = slot_of(index);
+      if (!reuse_slots || !slot || slot->alive || free[index]) return false;
+      free[index] = true;
+    }
+    return alive == size_;
+  }
+
   const Slot* slot_of(std::uint32_t index) const {
-    if (index >= slots_) return nullptr;
+    if (index >= slots_ || index / chunk_size >= chunks_.size() || !chunks_[index / chunk_size])
+      return nullptr;
     return &chunks_[index / chunk_size]->slots[index % chunk_size];
   }
   Slot& writable(std::uint32_t index) {
@@ -145,7 +224,17 @@ class Table {
     return chunk->slots[index % chunk_size];
   }
 
-  std::vector<std::shared_ptr<Chunk>> chunks_;
+  void take_over(const Chunk& chunk, std::uint32_t first_index) {
+    for (std::uint32_t i = 0; i < chunk_size; ++i) {
+      const Slot& slot = chunk.slots[i];
+      if (!slot.alive && slot.generation == 0 && !slot.redirect.valid()) continue;
+      Slot& mine = writable(first_index + i);
+      VSG_INVARIANT(!mine.alive);
+      mine = slot;
+    }
+  }
+
+  std::vector<std::shared_ptr<Chunk>> chunks_;  // null where no index was ever in use
   std::deque<std::uint32_t> free_;
   std::uint32_t slots_ = 0;
   std::uint32_t size_ = 0;

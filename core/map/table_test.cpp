@@ -26,6 +26,61 @@ TEST(Table, FindsWhatWasInserted) {
   EXPECT_EQ(table.find(NumberId{}), nullptr);
 }
 
+TEST(Table, StartsAtAnIndexAndKnowsNothingBelow) {
+  Numbers table;
+  table.start_at(1000003);
+  const NumberId first = add(table, 7), second = add(table, 8);
+  EXPECT_EQ(first.index, 1000003U);
+  EXPECT_EQ(second.index, 1000004U);
+  EXPECT_EQ(table.size(), 2U);
+  EXPECT_EQ(table.find({0, 0}), nullptr);
+  EXPECT_EQ(table.find({1000002, 0}), nullptr) << "in the first one's chunk";
+  EXPECT_FALSE(table.at_index(5).valid());
+  EXPECT_FALSE(table.resolve({5, 0}).valid());
+  int visited = 0;
+  table.for_each([&](NumberId id, int value) { visited += value * (id.index > 1000000U); });
+  EXPECT_EQ(visited, 15);
+  table.start_at(10);
+  EXPECT_EQ(add(table, 9).index, 1000005U) << "never goes back";
+}
+
+TEST(Table, FreeSlotsAreUsedBeforeANewStart) {
+  Numbers table;
+  const NumberId old = add(table, 1);
+  table.erase(old);
+  table.start_at(100);
+  EXPECT_EQ(add(table, 2).index, old.index);
+  EXPECT_EQ(add(table, 3).index, 100U);
+}
+
+TEST(Table, AbsorbsATableOfOtherIdsAndTouchesNeither) {
+  Numbers a, b;
+  std::vector<NumberId> in_a, in_b;
+  for (int i = 0; i < 6; ++i) in_a.push_back(add(a, i));
+  b.start_at(6);  // the second chunk holds values of both
+  for (int i = 0; i < 9; ++i) in_b.push_back(add(b, 100 + i));
+  a.start_at(b.index_bound());
+  for (int i = 6; i < 9; ++i) in_a.push_back(add(a, i));
+  b.erase(in_b[0], in_b[1]);
+  b.erase(in_b[4]);
+
+  Numbers both = a;
+  both.absorb(b);
+  EXPECT_EQ(both.size(), a.size() + b.size());
+  for (const NumberId id : in_a) EXPECT_EQ(*both.find(id), *a.find(id));
+  for (const NumberId id : in_b) EXPECT_EQ(both.contains(id), b.contains(id));
+  EXPECT_EQ(both.resolve(in_b[0]), in_b[1]) << "trails come along";
+
+  for (const NumberId id : in_a) *both.edit(id) = -1;
+  for (const NumberId id : in_b)
+    if (int* value = both.edit(id)) *value = -1;
+  EXPECT_EQ(*a.find(in_a[3]), 3);
+  EXPECT_EQ(*b.find(in_b[8]), 108);
+  EXPECT_EQ(add(both, 1).index, in_b[0].index) << "free slots come along";
+  EXPECT_EQ(add(both, 2).index, in_b[4].index);
+  EXPECT_EQ(add(both, 3).index, a.index_bound());
+}
+
 TEST(Table, StaleIdFindsNothingWhenItsSlotIsUsedAgain) {
   Numbers table;
   const NumberId old = add(table, 1);

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/options.h"
 #include "core/geometry/se3.h"
 #include "core/map/depth_grid.h"
@@ -27,6 +28,11 @@ struct FreeSpaceOptions {
   double moved_m = 0.03;
   double turned_deg = 0.5;
 };
+template <FieldsOf<FreeSpaceOptions> T>
+void visit_fields(T& v, auto& field) {
+  auto& [voxel_m, range_m, max_blocks, moved_m, turned_deg] = v;
+  field(voxel_m, range_m, max_blocks, moved_m, turned_deg);
+}
 
 template <typename Visitor>
 void describe(FreeSpaceOptions& o, Visitor& field) {
@@ -56,6 +62,13 @@ class FreeSpace {
   struct View {
     std::shared_ptr<const DepthGrid> depth;
     Se3 level_from_camera;  // as it was carved
+
+    template <FieldsOf<View> T>
+    friend void visit_fields(T& v, auto& field) {
+      field(v.depth, v.level_from_camera);
+      if constexpr (std::remove_reference_t<decltype(field)>::reads)
+        field.require(v.depth && v.level_from_camera.finite(), "a view of nothing");
+    }
   };
 
   explicit FreeSpace(const FreeSpaceOptions& options);
@@ -77,6 +90,13 @@ class FreeSpace {
   std::size_t memory_bytes() const { return voxels_.memory_bytes(); }
   // Changes whenever a voxel may have.
   std::uint64_t version() const { return version_; }
+
+  template <FieldsOf<FreeSpace> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.options_, v.voxels_, v.views_, v.version_);
+    if constexpr (std::remove_reference_t<decltype(field)>::reads)
+      field.require(v.options_.voxel_m >= 1e-3 && v.options_.range_m <= 1e3, "voxels of no size");
+  }
 
  private:
   void carve(const View& view, int sign);

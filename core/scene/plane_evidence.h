@@ -29,6 +29,11 @@ class PlaneEvidence {
   // Takes over what was counted for a plane that turned out to be the same.
   void add(const PlaneEvidence& other);
 
+  // Goes along where the plane is moved, world from world.
+  void move(const Se3& change) {
+    frame_ = {change * frame_.origin, change.rotation() * frame_.s, change.rotation() * frame_.t};
+  }
+
   const PlaneFrame& frame() const { return frame_; }
   const CellGrid<CellEvidence>& cells() const { return cells_; }
   // Seen as surface, and not rather as a hole.

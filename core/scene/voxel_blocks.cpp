@@ -37,6 +37,18 @@ void VoxelBlocks::rehash(std::size_t slots) {
     slots_[slot_of(blocks_[i].origin)] = static_cast<std::int32_t>(i);
 }
 
+bool VoxelBlocks::restore() {
+  std::size_t slots = first_slots;
+  while (slots < 2 * blocks_.size()) slots *= 2;
+  slots_.assign(slots, -1);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const std::size_t slot = slot_of(blocks_[i].origin);
+    if (slots_[slot] >= 0 || origin_of(blocks_[i].origin) != blocks_[i].origin) return false;
+    slots_[slot] = static_cast<std::int32_t>(i);
+  }
+  return true;
+}
+
 VoxelBlocks::Block& VoxelBlocks::block(const Eigen::Vector3i& voxel) {
   const Eigen::Vector3i origin = origin_of(voxel);
   std::size_t slot = slot_of(origin);

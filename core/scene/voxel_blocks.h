@@ -7,6 +7,8 @@
 #include <deque>
 #include <vector>
 
+#include "core/base/fields.h"
+
 namespace vsgraphs {
 
 struct Voxel {
@@ -18,6 +20,11 @@ struct Voxel {
   bool occupied() const { return hits >= 2 && 4 * hits >= passes; }
   bool free() const { return passes >= 2 && !occupied(); }
 };
+template <FieldsOf<Voxel> T>
+void visit_fields(T& v, auto& field) {
+  auto& [passes, hits] = v;
+  field(passes, hits);
+}
 
 class VoxelBlocks {
  public:
@@ -30,6 +37,10 @@ class VoxelBlocks {
     const Voxel& at(int x, int y, int z) const { return voxels[index(x, y, z)]; }
     static std::size_t index(int x, int y, int z) {
       return static_cast<std::size_t>((z * edge + y) * edge + x);
+    }
+    template <FieldsOf<Block> T>
+    friend void visit_fields(T& v, auto& field) {
+      field(v.origin, v.voxels);
     }
   };
 
@@ -44,7 +55,17 @@ class VoxelBlocks {
   std::size_t memory_bytes() const;
   void drop_empty();
 
+  // Blocks in the order they were made; the hash table follows from them.
+  template <FieldsOf<VoxelBlocks> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.blocks_);
+    if constexpr (std::remove_reference_t<decltype(field)>::reads)
+      field.require(v.restore(), "voxels that overlap");
+  }
+
  private:
+  // Makes the hash table of blocks that were read; false if two are one or one is out of step.
+  bool restore();
   std::size_t slot_of(const Eigen::Vector3i& origin) const;
   void rehash(std::size_t slots);
 

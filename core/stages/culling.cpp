@@ -60,10 +60,13 @@ bool redundant(const CullingOptions& options, const Map& map, KeyframeId id) {
 }  // namespace
 
 void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>& candidates, Draft& draft) {
+  KeyframeId first;
+  for (std::uint32_t index = 0; !first.valid() && index < draft.map().keyframes().index_bound(); ++index)
+    first = draft.map().keyframes().at_index(index);
   for (const KeyframeId id : candidates) {
     const Map& map = draft.map();
     const Keyframe* keyframe = map.keyframes().find(id);
-    if (!keyframe || id.index == 0 || keyframe->tracked_link || !redundant(options, map, id)) continue;
+    if (!keyframe || id == first || keyframe->tracked_link || !redundant(options, map, id)) continue;
     const auto neighbours = map.covisible(id, 1);
     if (!neighbours.empty()) draft.record(RemoveKeyframe{id, neighbours.front().first});
   }

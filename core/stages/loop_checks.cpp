@@ -109,10 +109,10 @@ bool surfaces_agree(const SurfaceAgreement& agreement, const LoopCheckOptions& o
   return compared < min_compared_m2 || agreement.disagreeing_m2 <= options.max_disagreeing_share * compared;
 }
 
-bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& up_in_world,
-                   const LoopCheckOptions& options) {
-  if (!up_in_world) return true;
-  const double cosine = up_in_world->dot(correction.rotation() * *up_in_world);
+bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& up_moved,
+                   const std::optional<Eigen::Vector3d>& up_standing, const LoopCheckOptions& options) {
+  if (!up_moved || !up_standing) return true;
+  const double cosine = up_standing->dot(correction.rotation() * *up_moved);
   return cosine >= std::cos(options.max_tilt_deg * rad_per_deg);
 }
 

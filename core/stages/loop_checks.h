@@ -58,9 +58,10 @@ SurfaceAgreement compare_surfaces(const std::vector<SightedPatch>& moved,
                                   const std::vector<SightedPatch>& standing, const LoopCheckOptions& options);
 bool surfaces_agree(const SurfaceAgreement& agreement, const LoopCheckOptions& options);
 
-// Whether the loop leaves up where it is. True while the map knows no up.
-bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& up_in_world,
-                   const LoopCheckOptions& options);
+// Whether what is moved has up where it was: `up` on the side that moves and on the side that stands. True while one of them
+// is not known.
+bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& up_moved,
+                   const std::optional<Eigen::Vector3d>& up_standing, const LoopCheckOptions& options);
 
 // Of the surfaces that `from` saw (moved by `correction`) and that stand in view of `to`, how many `to` looked through to
 // something behind. Their depth grids are compared, planes or not.

@@ -74,11 +74,11 @@ TEST(LoopChecks, UprightWithinTheTolerance) {
   const auto turned = [](const Eigen::Vector3d& axis, double deg) {
     return Se3(so3_exp(deg * rad_per_deg * axis), Eigen::Vector3d(1, 2, 3));
   };
-  EXPECT_TRUE(stays_upright(turned(Eigen::Vector3d::UnitX(), 4), up, {}));
-  EXPECT_FALSE(stays_upright(turned(Eigen::Vector3d::UnitX(), 6), up, {}));
-  EXPECT_FALSE(stays_upright(turned(Eigen::Vector3d::UnitZ(), -6), up, {}));
-  EXPECT_TRUE(stays_upright(turned(Eigen::Vector3d::UnitY(), 120), up, {})) << "about the vertical";
-  EXPECT_TRUE(stays_upright(turned(Eigen::Vector3d::UnitX(), 90), std::nullopt, {}));
+  EXPECT_TRUE(stays_upright(turned(Eigen::Vector3d::UnitX(), 4), up, up, {}));
+  EXPECT_FALSE(stays_upright(turned(Eigen::Vector3d::UnitX(), 6), up, up, {}));
+  EXPECT_FALSE(stays_upright(turned(Eigen::Vector3d::UnitZ(), -6), up, up, {}));
+  EXPECT_TRUE(stays_upright(turned(Eigen::Vector3d::UnitY(), 120), up, up, {})) << "about the vertical";
+  EXPECT_TRUE(stays_upright(turned(Eigen::Vector3d::UnitX(), 90), std::nullopt, up, {}));
 }
 
 class FreeSpace : public ::testing::Test {

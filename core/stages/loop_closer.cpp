@@ -40,13 +40,19 @@ const char* to_string(LoopVerdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-void follow(const Map& map, PlaceIndex& places) {
+bool follow(const Map& map, PlaceIndex& places) {
+  bool changed = false;
   for (const KeyframeId id : places.keyframes()) {
-    if (!map.keyframes().contains(id)) places.remove(id);
+    if (map.keyframes().contains(id)) continue;
+    places.remove(id);
+    changed = true;
   }
-  map.keyframes().for_each([&places](KeyframeId id, const Keyframe& keyframe) {
-    if (!places.contains(id)) places.add(id, *keyframe.features);
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
+    if (places.contains(id)) return;
+    places.add(id, *keyframe.features);
+    changed = true;
   });
+  return changed;
 }
 
 LoopCloser::LoopCloser(const LoopCloserOptions& options, const Camera& camera, const ScalePyramid& pyramid,
@@ -68,13 +74,15 @@ std::optional<MapEdit> LoopCloser::close(KeyframeId keyframe, const Snapshot& sn
                                                                                    options_.pause_keyframes);
   if (pausing) return std::nullopt;
   const MappedPlace here = place_around(map, keyframe, options_.neighbours + 1);
-  for (const Candidate& candidate : candidates(map, keyframe, places)) {
+  const auto excluded = too_close(map, keyframe, options_.min_gap_keyframes);
+  for (const Candidate& candidate :
+       candidates(map, *map.keyframes().find(keyframe)->features, places, excluded)) {
     const MappedPlace there = place_around(map, candidate.keyframe, options_.place_keyframes);
     LoopReport attempt;
     attempt.keyframe = keyframe;
     attempt.place = candidate.keyframe;
     attempt.score = candidate.score;
-    const auto loop = verify(map, here, there, attempt);
+    const auto loop = verify(map, here, there, map.up_in_world(), map.up_in_world(), attempt);
     if (loop) {
       const KeyframeGraph graph = graph_of(map, options_.drift);
       if (drift_passes(map, graph, there, *loop, attempt)) {
@@ -89,14 +97,13 @@ std::optional<MapEdit> LoopCloser::close(KeyframeId keyframe, const Snapshot& sn
   return std::nullopt;
 }
 
-std::vector<LoopCloser::Candidate> LoopCloser::candidates(const Map& map, KeyframeId keyframe,
-                                                          const PlaceIndex& places) const {
+std::vector<LoopCloser::Candidate> LoopCloser::candidates(const Map& map, const FeatureSet& features,
+                                                          const PlaceIndex& places,
+                                                          std::span<const std::uint8_t> excluded) const {
   constexpr int looked_at = 60;
-  const auto excluded = too_close(map, keyframe, options_.min_gap_keyframes);
   std::vector<std::uint8_t> covered(map.keyframes().index_bound(), 0);
   std::vector<Candidate> chosen;
-  for (const PlaceMatch& match :
-       places.query(*map.keyframes().find(keyframe)->features, looked_at, excluded)) {
+  for (const PlaceMatch& match : places.query(features, looked_at, excluded)) {
     if (match.score < options_.min_score || !map.keyframes().contains(match.keyframe)) continue;
     // One keyframe stands for its place; its neighbours would say the same.
     if (covered[match.keyframe.index]) continue;
@@ -109,7 +116,10 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates(const Map& map, Keyfra
 }
 
 std::optional<LoopAlignment> LoopCloser::verify(const Map& map, const MappedPlace& here,
-                                                const MappedPlace& there, LoopReport& report) const {
+                                                const MappedPlace& there,
+                                                const std::optional<Eigen::Vector3d>& up_here,
+                                                const std::optional<Eigen::Vector3d>& up_there,
+                                                LoopReport& report) const {
   report.verdict = LoopVerdict::not_aligned;
   const Rng rng(seed_, "loop", (std::uint64_t{here.centre.index} << 32) | there.centre.index);
   auto loop = aligner_.align(map, here.centre, there, rng);
@@ -129,7 +139,7 @@ std::optional<LoopAlignment> LoopCloser::verify(const Map& map, const MappedPlac
                      .norm();
   report.off_rad = rotation_angle(correction.rotation());
   report.verdict = LoopVerdict::tilted;
-  if (!stays_upright(correction, map.up_in_world(), options_.checks)) return std::nullopt;
+  if (!stays_upright(correction, up_here, up_there, options_.checks)) return std::nullopt;
   if (!surfaces_pass(map, here, there, correction, report)) return std::nullopt;
   return loop;
 }
@@ -170,13 +180,77 @@ MapEdit LoopCloser::correct(const Snapshot& snapshot, const KeyframeGraph& graph
     report.verdict = LoopVerdict::closed;
     move_map(spread_correction(*snapshot, graph, loop, there.centre, o, report.pose_graph), draft);
   }
+  merge_duplicates(here, there, loop, draft);
+  return draft.take();
+}
+
+void LoopCloser::merge_duplicates(const MappedPlace& here, const MappedPlace& there,
+                                  const LoopAlignment& loop, Draft& draft) const {
   join_sights(loop, draft);
   for (const KeyframeId id : without(here.keyframes, there.keyframes))
     fuse_into_neighbours(camera_, pyramid_, id, there.keyframes, draft);
   for (const KeyframeId id : there.keyframes)
     fuse_into_neighbours(camera_, pyramid_, id, without(here.keyframes, there.keyframes), draft);
   merge_coinciding_planes(here.keyframes, there.keyframes, options_.checks, draft);
-  return draft.take();
+}
+
+namespace {
+
+KeyframeId oldest(const Map& map) {
+  for (std::uint32_t index = 0; index < map.keyframes().index_bound(); ++index) {
+    if (const KeyframeId id = map.keyframes().at_index(index); id.valid()) return id;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<MapJoin> LoopCloser::join(KeyframeId keyframe, const Snapshot& snapshot, const KnownMap& other,
+                                        LoopReport& report, TraceSink* trace) {
+  const Span span(trace, "join_maps");
+  report = {};
+  report.keyframe = keyframe;
+  const Keyframe* now = snapshot->keyframes().find(keyframe);
+  if (!now) return std::nullopt;
+  const auto likely = candidates(*other.map, *now->features, *other.places, {});
+  if (likely.empty()) return std::nullopt;
+  // Side by side in one table, each where its own world has it: an alignment is a loop between the two.
+  Map both = *snapshot;
+  both.apply(AbsorbMap{other.map, Se3{}});
+  const MappedPlace here = place_around(both, keyframe, options_.neighbours + 1);
+  for (const Candidate& candidate : likely) {
+    const MappedPlace there = place_around(both, candidate.keyframe, options_.place_keyframes);
+    LoopReport attempt;
+    attempt.keyframe = keyframe;
+    attempt.place = candidate.keyframe;
+    attempt.score = candidate.score;
+    const auto loop = verify(both, here, there, snapshot->up_in_world(), other.map->up_in_world(), attempt);
+    if (loop) {
+      attempt.verdict = LoopVerdict::closed;
+      report = attempt;
+      last_closed_ = keyframe;
+      return join_maps(snapshot, other.map, here, there, *loop);
+    }
+    if (attempt.verdict > report.verdict) report = attempt;
+  }
+  return std::nullopt;
+}
+
+MapJoin LoopCloser::join_maps(const Snapshot& snapshot, const Snapshot& other, const MappedPlace& here,
+                              const MappedPlace& there, const LoopAlignment& loop) const {
+  const Se3 other_from_world =
+      (loop.world_from_camera * snapshot->keyframes().find(loop.keyframe)->world_from_camera.inverse())
+          .normalized();
+  MapJoin join;
+  join.onto_other = oldest(*other) < oldest(*snapshot);
+  join.older_from_younger = join.onto_other ? other_from_world : other_from_world.inverse();
+  Draft draft(join.onto_other ? other : snapshot);
+  if (join.onto_other)
+    draft.record(OpenMap{FirstIds::later(snapshot->unused_ids(), other->unused_ids()), snapshot->version()});
+  draft.record(AbsorbMap{join.onto_other ? snapshot : other, join.older_from_younger});
+  merge_duplicates(here, there, loop, draft);
+  join.edit = draft.take();
+  return join;
 }
 
 }  // namespace vsgraphs

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/options.h"
@@ -13,6 +14,7 @@
 #include "core/stages/loop_checks.h"
 #include "core/stages/loop_correction.h"
 #include "core/stages/loop_graph.h"
+#include "core/stages/messages.h"
 #include "core/vision/place_index.h"
 #include "core/vision/scale_pyramid.h"
 
@@ -69,6 +71,14 @@ struct LoopReport {
   SolveReport pose_graph;
 };
 
+// Two maps become one. `edit` is of the older one, whose world stays: it opens that map, where it is not the one being worked
+// on, and takes the younger one in.
+struct MapJoin {
+  bool onto_other = false;  // the older one is the other one
+  Se3 older_from_younger;
+  MapEdit edit;
+};
+
 class LoopCloser {
  public:
   LoopCloser(const LoopCloserOptions& options, const Camera& camera, const ScalePyramid& pyramid,
@@ -80,13 +90,22 @@ class LoopCloser {
   std::optional<MapEdit> close(KeyframeId keyframe, const Snapshot& snapshot, const PlaceIndex& places,
                                LoopReport& report, TraceSink* trace);
 
+  // Whether `keyframe`, which is in the snapshot being worked on, shows a place of another map: the same checks, but for
+  // the drift, of which there is none to be known between maps. Cost: as above, and one visit per chunk of both maps.
+  std::optional<MapJoin> join(KeyframeId keyframe, const Snapshot& snapshot, const KnownMap& other,
+                              LoopReport& report, TraceSink* trace);
+
  private:
   struct Candidate {
     KeyframeId keyframe;
     double score = 0;
   };
-  std::vector<Candidate> candidates(const Map& map, KeyframeId keyframe, const PlaceIndex& places) const;
+  std::vector<Candidate> candidates(const Map& map, const FeatureSet& features, const PlaceIndex& places,
+                                    std::span<const std::uint8_t> excluded) const;
+  // `up_here`: up as the map of `here` has it, while both maps stand unaligned in one table.
   std::optional<LoopAlignment> verify(const Map& map, const MappedPlace& here, const MappedPlace& there,
+                                      const std::optional<Eigen::Vector3d>& up_here,
+                                      const std::optional<Eigen::Vector3d>& up_there,
                                       LoopReport& report) const;
   bool surfaces_pass(const Map& map, const MappedPlace& here, const MappedPlace& there, const Se3& correction,
                      LoopReport& report) const;
@@ -94,6 +113,10 @@ class LoopCloser {
                     const LoopAlignment& loop, LoopReport& report) const;
   MapEdit correct(const Snapshot& snapshot, const KeyframeGraph& graph, const MappedPlace& here,
                   const MappedPlace& there, const LoopAlignment& loop, LoopReport& report) const;
+  MapJoin join_maps(const Snapshot& snapshot, const Snapshot& other, const MappedPlace& here,
+                    const MappedPlace& there, const LoopAlignment& loop) const;
+  void merge_duplicates(const MappedPlace& here, const MappedPlace& there, const LoopAlignment& loop,
+                        Draft& draft) const;
 
   LoopCloserOptions options_;
   Camera camera_;
@@ -103,8 +126,8 @@ class LoopCloser {
   std::optional<KeyframeId> last_closed_;
 };
 
-// Brings the index up to the map: adds keyframes that are new, removes those that were culled. Linear in the keyframes when
-// there is nothing to do.
-void follow(const Map& map, PlaceIndex& places);
+// Brings the index up to the map: adds keyframes that are new, removes those that were culled. Whether there was anything to
+// do; linear in the keyframes where there was not.
+bool follow(const Map& map, PlaceIndex& places);
 
 }  // namespace vsgraphs

@@ -8,6 +8,7 @@
 #include "core/base/image.h"
 #include "core/map/map.h"
 #include "core/vision/depth_lookup.h"
+#include "core/vision/place_index.h"
 
 namespace vsgraphs {
 
@@ -21,9 +22,23 @@ struct RgbdFrame {
   DepthView depth;
 };
 
+// A map, and the index that finds its keyframes by what they show.
+struct KnownMap {
+  Snapshot map;
+  std::shared_ptr<const PlaceIndex> places;
+};
+
+// What a frame can be looked up in: the map being worked on, and others, each in a world of its own. Ids are disjoint.
+struct KnownMaps {
+  KnownMap active;
+  std::vector<KnownMap> dormant;
+  // Nothing to be lost in.
+  bool empty() const { return active.map->keyframes().size() == 0 && dormant.empty(); }
+};
+
 enum class TrackStatus {
   waiting,      // no map yet and not enough depth to start one
-  initialised,  // this frame started the map
+  initialised,  // this frame started a map
   ok,           // pose measured
   coasting,     // pose predicted: nothing trustworthy was measured, for a moment
   lost,         // no pose
@@ -57,8 +72,9 @@ struct TrackedFrame {
   std::int64_t index = 0;
   double timestamp_s = 0;
   TrackStatus status = TrackStatus::waiting;
-  AnchoredPose pose;  // valid if has_pose(status), but for the first frame, whose keyframe is yet to be made
-  Se3 world_from_camera;                                    // the same in the snapshot's world
+  // Valid if has_pose(status); a frame that starts a map names no keyframe, as its own is yet to be made.
+  AnchoredPose pose;
+  Se3 world_from_camera;                                    // the same in the world of the map it is in
   int matches = 0;                                          // inlier correspondences behind the pose
   std::shared_ptr<const KeyframeRequest> keyframe_request;  // set if the frame should become a keyframe
 };

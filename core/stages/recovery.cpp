@@ -1,9 +1,10 @@
 #include "core/stages/recovery.h"
 
+#include <algorithm>
+
 #include "core/base/rng.h"
 #include "core/solve/align_matches.h"
 #include "core/vision/matching.h"
-#include "core/vision/place_candidates.h"
 
 namespace vsgraphs {
 
@@ -26,18 +27,26 @@ std::optional<FramePose> Recovery::from_recent(const Map& map, const FeatureSet&
   return best;
 }
 
-std::vector<KeyframeId> Recovery::likely_places(const Map& map, const FeatureSet& now) const {
-  std::vector<KeyframeId> keyframes;
-  std::vector<KnownPlace> places;
-  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    places.push_back({static_cast<int>(keyframes.size()), keyframe.features.get()});
-    keyframes.push_back(id);
-  });
-  PlaceSearchOptions place_options;
-  place_options.max_candidates = options_.max_candidates;
+std::vector<KeyframeId> Recovery::likely_places(const KnownMap& known, const FeatureSet& now,
+                                                RoomNumber last_room) const {
+  constexpr int looked_at = 60;
+  const Map& map = *known.map;
+  const auto limit = static_cast<std::size_t>(options_.max_candidates);
+  std::vector<KeyframeId> alike;
+  for (const PlaceMatch& match : known.places->query(now, looked_at)) {
+    if (map.keyframes().contains(match.keyframe)) alike.push_back(match.keyframe);
+  }
   std::vector<KeyframeId> likely;
-  for (const PlaceCandidate& candidate : find_place_candidates(now, places, place_options)) {
-    likely.push_back(keyframes[static_cast<std::size_t>(candidate.id)]);
+  if (last_room != no_room) {
+    for (const KeyframeId id : alike) {
+      if (likely.size() >= (limit + 1) / 2) break;
+      if (map.room_at(map.keyframes().find(id)->world_from_camera.translation()) == last_room)
+        likely.push_back(id);
+    }
+  }
+  for (const KeyframeId id : alike) {
+    if (likely.size() >= limit) break;
+    if (std::find(likely.begin(), likely.end(), id) == likely.end()) likely.push_back(id);
   }
   return likely;
 }
@@ -46,7 +55,7 @@ std::optional<FramePose> Recovery::from_keyframe(const Map& map, KeyframeId id, 
                                                  std::int64_t frame_index, FrameMatches& matches) const {
   const Keyframe& keyframe = *map.keyframes().find(id);
   return align(map, {keyframe.features.get(), keyframe.landmarks, keyframe.world_from_camera}, now,
-               frame_index, options_.min_relocalisation_inliers, matches);
+               frame_index, options_.min_aligned, matches);
 }
 
 std::optional<FramePose> Recovery::align(const Map& map, const Source& source, const FeatureSet& now,

@@ -12,16 +12,23 @@ MapEdit SceneBuilder::propose(KeyframeId keyframe, const Snapshot& snapshot, con
   Draft draft(snapshot);
   const Keyframe* now = draft.map().keyframes().find(keyframe);
   if (!now || !now->surface) return draft.take();
+  recall(draft.map());
   std::vector<PlaneId> touched = associate(keyframe, labels, draft, trace);
   const Span span(trace, "interpret_planes");
+  if (merges_all_) {
+    touched.clear();
+    draft.map().planes().for_each([&](PlaneId id, const MappedPlane&) { touched.push_back(id); });
+    merges_all_ = false;
+  }
   merge(touched, draft);
   const bool had_up = draft.map().up_in_world().has_value();
   find_up_direction(draft);
   if (!draft.map().up_in_world()) return draft.take();
   if (had_up) {
-    gather_evidence(keyframe, draft);
+    gather_evidence(keyframe, draft.map());
   } else {  // in retrospect
-    draft.map().keyframes().for_each([&](KeyframeId id, const Keyframe&) { gather_evidence(id, draft); });
+    draft.map().keyframes().for_each(
+        [&](KeyframeId id, const Keyframe&) { gather_evidence(id, draft.map()); });
   }
   touched.clear();
   draft.map().planes().for_each([&](PlaneId id, const MappedPlane&) { touched.push_back(id); });
@@ -64,11 +71,31 @@ std::vector<PlaneId> SceneBuilder::associate(KeyframeId id, const LabelGrid* lab
 void SceneBuilder::merge(const std::vector<PlaneId>& touched, Draft& draft) {
   for (const PlaneMerge& m : find_merges(draft.map(), touched, options_.association)) {
     draft.record(MergePlane{m.gone, m.kept});
-    const auto gone = evidence_.find(m.gone);
-    const auto kept = evidence_.find(m.kept);
-    if (gone != evidence_.end() && kept != evidence_.end()) kept->second.add(gone->second);
-    evidence_.erase(m.gone);
+    note_merge(m.gone, m.kept);
   }
+}
+
+void SceneBuilder::note_merge(PlaneId gone_id, PlaneId kept_id) {
+  const auto gone = evidence_.find(gone_id);
+  const auto kept = evidence_.find(kept_id);
+  if (gone != evidence_.end() && kept != evidence_.end()) kept->second.add(gone->second);
+  evidence_.erase(gone_id);
+}
+
+void SceneBuilder::recall(const Map& map) {
+  if (!map.up_in_world()) return;
+  bool known = map.planes().size() == 0;
+  map.planes().for_each([&](PlaneId id, const MappedPlane&) { known |= evidence_.contains(id); });
+  if (known) return;
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { gather_evidence(id, map); });
+}
+
+void SceneBuilder::move(const Map& map, const Se3& change) {
+  map.planes().for_each([&](PlaneId id, const MappedPlane&) {
+    const auto at = evidence_.find(id);
+    if (at != evidence_.end()) at->second.move(change);
+  });
+  merges_all_ = true;
 }
 
 void SceneBuilder::find_up_direction(Draft& draft) const {
@@ -91,8 +118,7 @@ void SceneBuilder::find_up_direction(Draft& draft) const {
   if (up && (!map.up_in_world() || up->cross(*map.up_in_world()).norm() > 1e-3)) draft.record(SetUp{*up});
 }
 
-void SceneBuilder::gather_evidence(KeyframeId keyframe, Draft& draft) {
-  const Map& map = draft.map();
+void SceneBuilder::gather_evidence(KeyframeId keyframe, const Map& map) {
   const Keyframe& seen = *map.keyframes().find(keyframe);
   if (!seen.surface) return;
   // A keyframe looked at again, for its labels, has told the planes it saw before all it can.

@@ -46,12 +46,21 @@ class SceneBuilder {
   // image seen before: looks at it again. A few ms.
   MapEdit propose(KeyframeId keyframe, const Snapshot& snapshot, const LabelGrid* labels, TraceSink* trace);
 
+  // Gathers what the rays of a map's keyframes say about its planes, where nobody has yet: the map was loaded. Cost: some
+  // tens of us per pair of keyframe and plane, once.
+  void recall(const Map& map);
+  // A map was joined with another: its planes were moved by `change` (world from world), and the next proposal looks for
+  // planes to merge among all.
+  void move(const Map& map, const Se3& change);
+  // `gone` was merged into `kept` by somebody else.
+  void note_merge(PlaneId gone, PlaneId kept);
+
  private:
   std::vector<PlaneId> associate(KeyframeId keyframe, const LabelGrid* labels, Draft& draft,
                                  TraceSink* trace);
   void merge(const std::vector<PlaneId>& touched, Draft& draft);
   void find_up_direction(Draft& draft) const;
-  void gather_evidence(KeyframeId keyframe, Draft& draft);
+  void gather_evidence(KeyframeId keyframe, const Map& map);
   void classify(const std::vector<PlaneId>& candidates, Draft& draft) const;
   bool another_is_the_wall(const Map& map, PlaneId id) const;
   SurfaceFacts facts_of(const Map& map, const MappedPlane& plane) const;
@@ -62,6 +71,7 @@ class SceneBuilder {
   Camera camera_;
   std::map<PlaneId, PlaneEvidence> evidence_;  // once it is known which way is up
   std::set<KeyframeId> told_;                  // keyframes whose rays are in it
+  bool merges_all_ = false;                    // maps were joined since the last proposal
 };
 
 }  // namespace vsgraphs

@@ -79,6 +79,24 @@ void StructureBuilder::carve(const Map& map, const Se3& level_from_world, bool l
   free_space_.refresh(poses, last ? std::numeric_limits<int>::max() : options_.max_reintegrations);
 }
 
+void StructureBuilder::switch_to(const FreeSpace* free_space) {
+  last_pass_s_.reset();
+  const FreeSpaceOptions& wanted = options_.free_space;
+  const bool usable = free_space && free_space->options().voxel_m == wanted.voxel_m &&
+                      free_space->options().range_m == wanted.range_m;
+  free_space_ = usable ? *free_space : FreeSpace(wanted);
+}
+
+void StructureBuilder::absorb(const Map& map, const FreeSpace& free_space) {
+  if (!map.up_in_world()) return;
+  const Se3 level_from_world = levelling(*map.up_in_world());
+  for (const auto& [id, view] : free_space.views()) {
+    const auto pose = map.resolve({id, Se3{}});
+    if (pose && !free_space_.views().contains(id))
+      free_space_.integrate(id, view.depth, level_from_world * *pose);
+  }
+}
+
 MapEdit StructureBuilder::propose(const Snapshot& snapshot, double timestamp_s, bool last, TraceSink* trace) {
   last_pass_s_ = timestamp_s;
   Draft draft(snapshot);

@@ -34,6 +34,14 @@ class StructureBuilder {
   // One pass. `last`: nothing comes after it, so everything that was corrected is carved anew.
   MapEdit propose(const Snapshot& snapshot, double timestamp_s, bool last, TraceSink* trace);
 
+  // The free space so far.
+  const FreeSpace& free_space() const { return free_space_; }
+  // Goes on with another map: with a copy of what was carved of it, or (null, or carved at another resolution) from its
+  // keyframes' depth at the next pass.
+  void switch_to(const FreeSpace* free_space);
+  // `map` has taken in another one: carves what was carved there, retired keyframes included, where they stand now.
+  void absorb(const Map& map, const FreeSpace& free_space);
+
   std::size_t free_space_bytes() const { return free_space_.memory_bytes(); }
 
  private:

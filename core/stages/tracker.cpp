@@ -34,21 +34,47 @@ Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Cam
       aligner_(camera),
       recovery_(options.recovery, camera, pyramid_, seed) {}
 
-TrackedFrame Tracker::track(const RgbdFrame& frame, const Snapshot& snapshot, int backlog, TraceSink* trace) {
+TrackedFrame Tracker::track(const RgbdFrame& frame, const KnownMaps& known, int backlog, TraceSink* trace) {
   extract(frame, trace);
-  if (!last_) return start(snapshot);
-  const Map& map = *snapshot;
-  last_->pose = *map.reanchor(last_->pose);
-  const double seconds = now_.timestamp_s - last_->timestamp_s;
-  last_world_ = *map.resolve(last_->pose);
-  predicted_ = motion_.predict(*last_world_, seconds);
-  adopt_landmarks_of_own_keyframe(map);
   visible_now_.clear();
+  if (known.empty() && !last_) return enough_to_start() ? start() : report(TrackStatus::waiting, Se3{});
+  const KnownMap* last_in = place_last_frame(known);
+  if (!last_in) lost_ = true;
+  if (lost_) {
+    const auto found = relocalise(known, last_in, trace);
+    return found ? finish_relocalised(known, *found, backlog) : stay_lost();
+  }
+  const Map& map = *last_in->map;
+  const double seconds = now_.timestamp_s - last_->timestamp_s;
+  predicted_ = motion_.predict(*last_world_, seconds);
+  const std::optional<FramePose> pose = follow(map, seconds, trace);
+  if (pose) return finish(map, *pose, last_->pose.keyframe, backlog);
+  ++unmeasured_frames_;
+  return loses_track() ? stay_lost() : coast(map);
+}
 
-  const bool was_lost = lost_;
-  std::optional<FramePose> pose = was_lost ? relocalise(map, seconds, trace) : follow(map, seconds, trace);
-  if (!pose) return coast_or_lose(map);
-  return finish(snapshot, *pose, was_lost ? TrackStatus::relocalised : TrackStatus::ok, backlog);
+// The map that holds the last frame, which may have been moved or joined with another since; null if none does.
+const KnownMap* Tracker::place_last_frame(const KnownMaps& known) {
+  last_world_.reset();
+  if (!last_) return nullptr;
+  // The keyframe made of a frame that started a map had no name then.
+  if (!last_->pose.keyframe.valid()) {
+    last_->pose.keyframe = known.active.map->keyframe_of_frame(last_->index);
+    if (!last_keyframe_pose_->keyframe.valid()) last_keyframe_pose_->keyframe = last_->pose.keyframe;
+  }
+  const auto holds = [this](const KnownMap& candidate) {
+    const auto living = candidate.map->reanchor(last_->pose);
+    if (!living) return false;
+    last_->pose = *living;
+    last_world_ = *candidate.map->resolve(*living);
+    adopt_landmarks_of_own_keyframe(*candidate.map);
+    return true;
+  };
+  if (holds(known.active)) return &known.active;
+  for (const KnownMap& dormant : known.dormant) {
+    if (holds(dormant)) return &dormant;
+  }
+  return nullptr;
 }
 
 std::optional<FramePose> Tracker::follow(const Map& map, double seconds, TraceSink* trace) {
@@ -56,7 +82,7 @@ std::optional<FramePose> Tracker::follow(const Map& map, double seconds, TraceSi
   std::optional<FramePose> pose = match_recent(map, guessed, trace);
   if (pose) {
     const Span span(trace, "match_local_map");
-    pose = refine_on_local_map(map, *pose);
+    pose = refine_on_local_map(map, *pose, last_->pose.keyframe, options_.local_search_radius_px);
   }
   if (pose && guessed && !surfaces_agree(map, *pose)) pose.reset();
   if (pose && !believable(pose->world_from_camera, seconds)) pose.reset();
@@ -67,23 +93,53 @@ std::optional<FramePose> Tracker::follow(const Map& map, double seconds, TraceSi
   return pose;
 }
 
-// Whatever might be the place is tried to the end: the last frame's surroundings first, then what looks most alike.
-std::optional<FramePose> Tracker::relocalise(const Map& map, double seconds, TraceSink* trace) {
+// Whatever might be the place is tried to the end: the last frame's surroundings first, then what looks most alike, in the
+// map the camera was lost in, the active one and the others.
+std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const KnownMap* last_in,
+                                                  TraceSink* trace) {
   const Span span(trace, "relocalise");
-  const auto accept = [&](std::optional<FramePose> pose) {
-    if (pose) pose = refine_on_local_map(map, *pose);
-    const bool good = pose && pose->inliers >= options_.recovery.min_relocalisation_inliers &&
-                      surfaces_agree(map, *pose) && believable(pose->world_from_camera, seconds);
-    return good ? pose : std::nullopt;
-  };
-  auto pose = accept(recovery_.from_recent(map, *now_.features, now_.index, *last_->features,
-                                           last_->landmarks, *last_world_, last_->pose.keyframe, matches_));
-  if (pose) return pose;
-  for (const KeyframeId place : recovery_.likely_places(map, *now_.features)) {
-    pose = accept(recovery_.from_keyframe(map, place, *now_.features, now_.index, matches_));
-    if (pose) return pose;
+  if (last_in) {
+    const auto& last = *last_;
+    const auto pose =
+        search_around(*last_in->map,
+                      recovery_.from_recent(*last_in->map, *now_.features, now_.index, *last.features,
+                                            last.landmarks, *last_world_, last.pose.keyframe, matches_),
+                      last.pose.keyframe);
+    if (pose && believable(pose->world_from_camera, now_.timestamp_s - last.timestamp_s))
+      return Found{last_in, *pose};
+  }
+  std::vector<const KnownMap*> order;
+  if (last_in) order.push_back(last_in);
+  if (last_in != &known.active) order.push_back(&known.active);
+  for (const KnownMap& dormant : known.dormant) {
+    if (last_in != &dormant) order.push_back(&dormant);
+  }
+  for (const KnownMap* candidate : order) {
+    const Map& map = *candidate->map;
+    const bool was_here = candidate == last_in;
+    const RoomNumber last_room = was_here ? map.room_at(last_world_->translation()) : no_room;
+    for (const KeyframeId place : recovery_.likely_places(*candidate, *now_.features, last_room)) {
+      const auto pose = search_around(
+          map, recovery_.from_keyframe(map, place, *now_.features, now_.index, matches_), place);
+      if (!pose) continue;
+      if (was_here && !believable(pose->world_from_camera, now_.timestamp_s - last_->timestamp_s)) continue;
+      return Found{candidate, *pose};
+    }
   }
   return std::nullopt;
+}
+
+// A pose by look from one keyframe may rest on few matches: what lies around is looked for, first widely, then narrowly,
+// and must be there.
+std::optional<FramePose> Tracker::search_around(const Map& map, std::optional<FramePose> guess,
+                                                KeyframeId near) {
+  for (const double radius_px : {options_.search_radius_px, options_.local_search_radius_px}) {
+    if (!guess) return std::nullopt;
+    guess = refine_on_local_map(map, *guess, near, radius_px);
+  }
+  const bool good =
+      guess && guess->inliers >= options_.recovery.min_relocalisation_inliers && surfaces_agree(map, *guess);
+  return good ? guess : std::nullopt;
 }
 
 void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
@@ -101,15 +157,25 @@ void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
   now_.landmarks.assign(static_cast<std::size_t>(now_.features->size()), LandmarkId{});
 }
 
-TrackedFrame Tracker::start(const Snapshot& snapshot) {
+bool Tracker::enough_to_start() const {
   const auto with_depth = std::count_if(now_.features->features().begin(), now_.features->features().end(),
                                         [](const Feature& f) { return f.has_depth(); });
-  if (with_depth < options_.min_features_to_start) return report(TrackStatus::waiting, Se3{});
-  // The request will become the map's first keyframe, and this frame hangs on it.
-  now_.pose = {snapshot->keyframes().next_id(), Se3{}};
+  return with_depth >= options_.min_features_to_start;
+}
+
+// The request will become the first keyframe of a map, and this frame hangs on it.
+TrackedFrame Tracker::start() {
+  now_.pose = {};
+  lost_ = false;
+  searching_since_s_.reset();
+  motion_.forget();
+  sightings_.clear();
   last_measured_s_ = now_.timestamp_s;
+  unmeasured_frames_ = 0;
   TrackedFrame result = report(TrackStatus::initialised, Se3{});
-  result.matches = static_cast<int>(with_depth);
+  result.matches =
+      static_cast<int>(std::count_if(now_.features->features().begin(), now_.features->features().end(),
+                                     [](const Feature& f) { return f.has_depth(); }));
   result.keyframe_request = make_request(now_.pose, true);
   last_ = now_;
   return result;

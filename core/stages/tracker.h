@@ -37,6 +37,7 @@ struct TrackerOptions {
   double max_turn_change_rad_per_s = 2.5;
   double coast_s = 0.4;
   int coast_frames = 3;
+  double new_map_after_s = 2.0;
   KeyframePolicyOptions keyframe;
   RecoveryOptions recovery;
 };
@@ -63,15 +64,19 @@ void describe(TrackerOptions& o, Visitor& field) {
   field("coast_s", o.coast_s, 0.0, 5.0, "how long the motion model is believed when nothing is measured");
   field("coast_frames", o.coast_frames, 0, 100,
         "frames for which it is believed at least, however slow they come");
+  field("new_map_after_s", o.new_map_after_s, 0.0, 3600.0,
+        "a lost camera that sees enough and recognises nothing for so long starts a new map");
 }
 
 class Tracker {
  public:
   Tracker(const TrackerOptions& options, const OrbOptions& orb, const Camera& camera, std::uint64_t seed);
 
-  // `backlog`: keyframes requested earlier and not yet in the snapshot. Frames come with increasing timestamps.
+  // `backlog`: keyframes requested earlier and not yet in the maps. Frames come with increasing timestamps; after a frame
+  // that started a map, its keyframe is in the active one. Begins lost where maps are known from the start. A frame found
+  // again in a dormant map asks for a keyframe there: whoever makes it makes that map the active one.
   // Throws InputError for images that do not fit the camera.
-  TrackedFrame track(const RgbdFrame& frame, const Snapshot& snapshot, int backlog, TraceSink* trace);
+  TrackedFrame track(const RgbdFrame& frame, const KnownMaps& known, int backlog, TraceSink* trace);
 
  private:
   // The frame being worked on, and afterwards the last one.
@@ -87,22 +92,31 @@ class Tracker {
   };
 
   void extract(const RgbdFrame& frame, TraceSink* trace);
-  TrackedFrame start(const Snapshot& snapshot);
+  bool enough_to_start() const;
+  TrackedFrame start();
+  const KnownMap* place_last_frame(const KnownMaps& known);
   std::optional<FramePose> follow(const Map& map, double seconds, TraceSink* trace);
-  std::optional<FramePose> relocalise(const Map& map, double seconds, TraceSink* trace);
+  // Where a lost frame was found.
+  struct Found {
+    const KnownMap* in = nullptr;
+    FramePose pose;
+  };
+  std::optional<Found> relocalise(const KnownMaps& known, const KnownMap* last_in, TraceSink* trace);
+  std::optional<FramePose> search_around(const Map& map, std::optional<FramePose> guess, KeyframeId near);
   std::optional<FramePose> match_recent(const Map& map, bool& guessed, TraceSink* trace);
   double match_last_frame(const Map& map, const Se3& predicted, double radius_px,
                           const std::function<void(const std::optional<FramePose>&, bool)>& found_pose);
   void match_points_of_last_frame(const Map& map, const Se3& predicted, double radius_px, bool landmarks);
-  std::optional<FramePose> refine_on_local_map(const Map& map, const FramePose& guess);
-  void project_local_map(const Map& map, const Se3& world_from_camera);
+  std::optional<FramePose> refine_on_local_map(const Map& map, const FramePose& guess, KeyframeId near,
+                                               double radius_px);
+  void project_local_map(const Map& map, const Se3& world_from_camera, double radius_px);
   // What landmarks are too few to tell, surfaces may. Returns the better pose, or `pose` where they do not.
   std::optional<FramePose> align_surfaces(const Map& map, const std::optional<FramePose>& pose,
                                           double seconds);
   std::optional<FramePose> hold_by_surfaces(const Map& map, const SurfaceReference& reference,
                                             const Se3& guess, const PosePriorTerm& prior, double seconds);
   SurfaceReference choose_surface(const Map& map, const Se3& world_from_camera);
-  void match_local_map(const Map& map, const Se3& world_from_camera);
+  void match_local_map(const Map& map, const Se3& world_from_camera, double radius_px);
   PosePriorTerm motion_prior(const Se3& predicted, double seconds) const;
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
@@ -110,9 +124,14 @@ class Tracker {
   bool believable(const Se3& world_from_now, double seconds) const;
   void note_sightings();
   void adopt_landmarks_of_own_keyframe(const Map& map);
-  KeyframeId choose_anchor() const;
-  TrackedFrame finish(const Snapshot& snapshot, const FramePose& pose, TrackStatus status, int backlog);
-  TrackedFrame coast_or_lose(const Map& map);
+  KeyframeId choose_anchor(KeyframeId near) const;
+  TrackedFrame finish(const Map& map, const FramePose& pose, KeyframeId near, int backlog);
+  TrackedFrame finish_relocalised(const KnownMaps& known, const Found& found, int backlog);
+  TrackedFrame answer(const Map& map, const FramePose& pose, TrackStatus status, bool always_keep,
+                      int backlog);
+  TrackedFrame coast(const Map& map);
+  bool loses_track() const;
+  TrackedFrame stay_lost();
   std::vector<LandmarkId> matched_landmarks() const;
   KeyframeEvidence gather_evidence(const Map& map, const Se3& world_from_camera, int backlog) const;
   std::shared_ptr<const KeyframeRequest> make_request(const AnchoredPose& pose, bool first);
@@ -142,12 +161,13 @@ class Tracker {
   std::vector<LandmarkId> visible_now_;  // landmarks this frame should show
 
   std::optional<FrameState> last_;  // the last frame that had a pose
-  std::optional<Se3> last_world_;   // its pose in the present snapshot's world
+  std::optional<Se3> last_world_;   // its pose in the world of the map that holds it now, if one does
   Se3 predicted_;                   // where the motion model puts this frame
   FrameState now_;
   double last_measured_s_ = 0;  // when a pose was last measured, not coasted
   int unmeasured_frames_ = 0;
   bool lost_ = false;
+  std::optional<double> searching_since_s_;  // when a lost camera first saw enough to start a map
   std::optional<AnchoredPose> last_keyframe_pose_;
   double last_keyframe_s_ = 0;
 };

@@ -111,9 +111,10 @@ void Tracker::match_points_of_last_frame(const Map& map, const Se3& predicted, d
   }
 }
 
-std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const FramePose& guess) {
-  local_map_.select(map, matched_landmarks(), last_->pose.keyframe, options_.local_keyframes);
-  match_local_map(map, guess.world_from_camera);
+std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const FramePose& guess, KeyframeId near,
+                                                      double radius_px) {
+  local_map_.select(map, matched_landmarks(), near, options_.local_keyframes);
+  match_local_map(map, guess.world_from_camera, radius_px);
   const auto landmarks = matched_landmarks().size();
   // The map is the better reference; the last frame's own readings only carry where the map is thin.
   if (static_cast<int>(landmarks) >= 2 * options_.min_inliers) matches_.keep_landmarks_only();
@@ -127,8 +128,8 @@ std::optional<FramePose> Tracker::refine_on_local_map(const Map& map, const Fram
   return pose;
 }
 
-void Tracker::match_local_map(const Map& map, const Se3& world_from_camera) {
-  project_local_map(map, world_from_camera);
+void Tracker::match_local_map(const Map& map, const Se3& world_from_camera, double radius_px) {
+  project_local_map(map, world_from_camera, radius_px);
   MatchOptions options;
   options.ratio = 0.8;
   const std::vector<int> found = match_projected(projections_, *now_.features, options, matches_.taken());
@@ -138,7 +139,7 @@ void Tracker::match_local_map(const Map& map, const Se3& world_from_camera) {
 }
 
 // Projects the local map's landmarks that are not matched yet; counts all that should be visible as such.
-void Tracker::project_local_map(const Map& map, const Se3& world_from_camera) {
+void Tracker::project_local_map(const Map& map, const Se3& world_from_camera, double radius_px) {
   const Se3 camera_from_world = world_from_camera.inverse();
   std::vector<LandmarkId> matched = matched_landmarks();
   std::sort(matched.begin(), matched.end());
@@ -147,8 +148,8 @@ void Tracker::project_local_map(const Map& map, const Se3& world_from_camera) {
   visible_now_.clear();
   for (const LandmarkId id : local_map_.landmarks()) {
     LandmarkView view;
-    if (!project_landmark(camera_, pyramid_, camera_from_world, id, *map.landmarks().find(id),
-                          options_.local_search_radius_px, view)) {
+    if (!project_landmark(camera_, pyramid_, camera_from_world, id, *map.landmarks().find(id), radius_px,
+                          view)) {
       continue;
     }
     visible_now_.push_back(id);

@@ -50,7 +50,7 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
     if (!first.convincing()) return std::nullopt;
     matches_.reset(now_.features->size());
     local_map_.select(map, {}, reference.id, options_.local_keyframes);
-    match_local_map(map, first.solution.world_from_camera);
+    match_local_map(map, first.solution.world_from_camera, options_.local_search_radius_px);
     return hold_by_surfaces(map, reference, first.solution.world_from_camera, prior, seconds);
   }
   const auto held = hold_by_surfaces(map, reference, guess, prior, seconds);

@@ -9,6 +9,7 @@
 #include "core/base/check.h"
 #include "core/base/rng.h"
 #include "core/stages/local_mapper.h"
+#include "core/stages/loop_closer.h"
 
 namespace vsgraphs {
 namespace {
@@ -65,7 +66,7 @@ class TrackerTest : public ::testing::Test {
     frame.timestamp_s = timestamp_s;
     frame.grey = grey;
     frame.depth.metres = depth;
-    TrackedFrame result = tracker_.track(frame, snapshot_, 0, nullptr);
+    TrackedFrame result = tracker_.track(frame, known(), 0, nullptr);
     if (result.keyframe_request) {
       KeyframeId id;
       apply(mapper_.insert(*result.keyframe_request, snapshot_, id, nullptr));
@@ -77,7 +78,9 @@ class TrackerTest : public ::testing::Test {
   void apply(const MapEdit& edit) {
     map_.apply(edit);
     snapshot_ = map_.snapshot();
+    follow(map_, places_);
   }
+  KnownMaps known() const { return {{snapshot_, std::make_shared<const PlaceIndex>(places_)}, dormant_}; }
   // Frames 0..count-1 at 3 px each, as a camera moves that is followed well.
   void slide(int count) {
     for (int i = 0; i < count; ++i) {
@@ -97,6 +100,8 @@ class TrackerTest : public ::testing::Test {
   Image<float> depth_ = depth_for_features_only(), no_depth_{width, height, 0.0F};
   Map map_;
   Snapshot snapshot_ = map_.snapshot();
+  PlaceIndex places_;
+  std::vector<KnownMap> dormant_;
   OrbOptions orb_;
   LocalMapper mapper_{LocalMapperOptions{}, small_camera(), orb_.pyramid()};
   Tracker tracker_{TrackerOptions{}, orb_, small_camera(), 1};

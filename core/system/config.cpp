@@ -142,6 +142,7 @@ void Config::visit(Visitor&& visitor) {
   describe_group("loop.checks", loop.checks, visitor);
   describe_group("loop.drift", loop.drift, visitor);
   describe_group("loop.correction", loop.correction, visitor);
+  describe_group("places", places, visitor);
   describe_group("structure", structure, visitor);
   describe_group("structure.free_space", structure.free_space, visitor);
   describe_group("structure.level", structure.structure.level, visitor);

@@ -13,6 +13,7 @@
 #include "core/stages/structure_builder.h"
 #include "core/stages/tracker.h"
 #include "core/vision/orb_extractor.h"
+#include "core/vision/place_index.h"
 
 namespace vsgraphs {
 
@@ -22,6 +23,8 @@ struct SystemOptions {
   int seed = 0;
   bool realtime = false;
   bool loop_closing = true;
+  bool localise_only = false;
+  int min_map_keyframes = 5;
   bool builds_scene() const { return mode != "slam"; }
   bool builds_structure() const { return mode == "full"; }
   int max_waiting_keyframes = 2;
@@ -41,6 +44,10 @@ void describe(SystemOptions& o, Visitor& field) {
   field("realtime", o.realtime, "tracking never waits for mapping, as with a live camera");
   field("loop_closing", o.loop_closing,
         "places seen before are recognised and the drift since then taken out");
+  field("localise_only", o.localise_only,
+        "the camera is only located in the loaded maps, which stay as they are");
+  field("min_map_keyframes", o.min_map_keyframes, 1, 1000,
+        "a map of fewer keyframes is dropped when tracking was lost and a new one begins");
   field("max_waiting_keyframes", o.max_waiting_keyframes, 1, 50,
         "unless realtime: tracking waits while more keyframes than this wait for the mapper");
   field("schedule_out", o.schedule_out, AllowedValues{},
@@ -68,6 +75,7 @@ class Config {
   StructureBuilderOptions structure;
   LoopCloserOptions loop;
   FactorSwitches factors;
+  PlaceIndexOptions places;
 
   // Throws InputError: unknown key (names the nearest), wrong type, out of range (names the range).
   void set(const std::string& key, const OptionValue& value);

@@ -10,6 +10,7 @@
 #include "core/system/config.h"
 #include "core/system/markers.h"
 #include "core/system/schedule.h"
+#include "core/system/snapshot_cell.h"
 #include "core/system/span_recorder.h"
 
 namespace vsgraphs {
@@ -26,7 +27,10 @@ class Executor {
   // Waits for all work; afterwards the map is final. May be called twice.
   virtual void finish() = 0;
 
-  virtual Snapshot snapshot() const = 0;
+  // The newest maps; any thread.
+  virtual SnapshotCell::Content content() const = 0;
+  // Of the map worked on, after finish().
+  virtual std::shared_ptr<const FreeSpace> free_space() const = 0;
   virtual std::int64_t backlog() const = 0;
   // Time the tracker spent waiting for the mapper, s.
   virtual double waited_s() const { return 0.0; }
@@ -35,9 +39,13 @@ class Executor {
   virtual Schedule schedule() const = 0;
 };
 
-std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera);
-std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera);
+// `known`: what the run starts from; see MapOwner.
+std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera,
+                                               const AtlasState& known);
+std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera,
+                                                 const AtlasState& known);
 // Follows config.system.replay. track() and finish() throw RunError when the run departs from it.
-std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera);
+std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera,
+                                                  const AtlasState& known);
 
 }  // namespace vsgraphs

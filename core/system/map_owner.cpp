@@ -5,48 +5,55 @@
 
 namespace vsgraphs {
 
-void SnapshotCell::publish(Content content) {
-  const std::lock_guard lock(mutex_);
-  content_ = std::move(content);
-  changed_.notify_all();
-}
-
-SnapshotCell::Content SnapshotCell::take() const {
-  const std::lock_guard lock(mutex_);
-  return content_;
-}
-
-void SnapshotCell::wait_for_inserted(std::int64_t count) const {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this, count] { return closed_ || content_.inserted >= count; });
-}
-
-void SnapshotCell::close() {
-  const std::lock_guard lock(mutex_);
-  closed_ = true;
-  changed_.notify_all();
-}
-
-MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell)
-    : snapshot_(map_.snapshot()),
+MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known)
+    : options_(config.system),
+      snapshot_(map_.snapshot()),
       mapper_(config.mapper, camera, config.orb.pyramid(), config.factors),
       scene_(config.scene, camera),
       structure_(config.structure),
       loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
+      place_options_(config.places),
+      places_(config.places),
       model_{camera, config.orb.pyramid().factor, config.mapper.sigma_px, config.factors},
-      closes_loops_(config.system.loop_closing),
       cell_(cell),
       spans_("local mapping"),
       scene_spans_("scene understanding") {
-  cell_.publish({snapshot_, 0});
+  start_from(known);
+  publish();
+}
+
+void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining,
+                       const std::function<bool()>& stop_adjusting) {
+  insert(request);
+  if (options_.builds_scene()) find_planes();
+  if (options_.builds_structure() && rooms_due()) find_rooms(false);
+  refine(stop_refining);
+  look_for_loop();
+  if (loop_found()) {
+    close_loop();
+  } else {
+    look_for_join();
+    if (!join_found()) return;
+    join_maps();
+  }
+  adjust_all(stop_adjusting);
+  if (options_.builds_structure()) find_rooms(false);
+}
+
+void MapOwner::end_run() {
+  if (inserted_ == 0) return;
+  settle();
+  if (options_.builds_structure()) find_rooms(true);
 }
 
 void MapOwner::insert(const KeyframeRequest& request) {
+  choose_map(request);
   spans_.set_frame(request.frame_index);
   const MapEdit edit = mapper_.insert(request, snapshot_, newest_, &spans_);
   newest_frame_ = request.frame_index;
   newest_s_ = request.timestamp_s;
   ++inserted_;
+  ++made_;
   apply(edit, {EditEvent::Kind::insert, request.frame_index, 0, 0});
 }
 
@@ -59,16 +66,8 @@ void MapOwner::find_planes() {
   apply(edit, {EditEvent::Kind::planes, newest_frame_, 0, 0});
 }
 
-KeyframeId MapOwner::keyframe_of(std::int64_t frame_index) const {
-  KeyframeId found;
-  map_.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    if (keyframe.frame_index == frame_index) found = id;
-  });
-  return found;
-}
-
 bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
-  const KeyframeId labelled = keyframe_of(frame_index);
+  const KeyframeId labelled = map_.keyframe_of_frame(frame_index);
   if (!labelled.valid()) return false;
   scene_spans_.set_frame(frame_index);
   const MapEdit edit = [&] {
@@ -80,7 +79,7 @@ bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
 }
 
 bool MapOwner::mark(std::int64_t frame_index, const MarkerDetections& detections) {
-  const KeyframeId seeing = keyframe_of(frame_index);
+  const KeyframeId seeing = map_.keyframe_of_frame(frame_index);
   if (!seeing.valid()) return false;
   scene_spans_.set_frame(frame_index);
   const MapEdit edit = [&] {
@@ -93,16 +92,15 @@ bool MapOwner::mark(std::int64_t frame_index, const MarkerDetections& detections
 
 void MapOwner::look_for_loop() {
   loop_edit_.reset();
-  if (!closes_loops_ || !map_.keyframes().contains(newest_)) return;
+  if (!options_.loop_closing || !map_.keyframes().contains(newest_)) return;
   const Span span(&spans_, "look_for_loop");
-  follow(map_, places_);
   LoopReport report;
   loop_edit_ = loop_closer_.close(newest_, snapshot_, places_, report, &spans_);
 }
 
 void MapOwner::close_loop() {
   VSG_INVARIANT(loop_edit_.has_value());
-  ++loops_;
+  ++counts_.loops;
   apply(*loop_edit_, {EditEvent::Kind::loop, newest_frame_, 0, 0});
   loop_edit_.reset();
 }
@@ -138,7 +136,13 @@ void MapOwner::apply(const MapEdit& edit, EditEvent event) {
   snapshot_ = map_.snapshot();
   event.hash = edit.hash();
   edits_.push_back(event);
-  cell_.publish({snapshot_, inserted_});
+  publish();
+}
+
+void MapOwner::publish() {
+  if (follow(*snapshot_, places_) || !published_places_)
+    published_places_ = std::make_shared<const PlaceIndex>(places_);
+  cell_.publish({snapshot_, inserted_, published_places_, published_dormant_, counts_});
 }
 
 }  // namespace vsgraphs

@@ -1,10 +1,12 @@
-// The one place where the map is written. Takes keyframe requests, has the mapper work out edits, applies them and
-// publishes a snapshot after each. Runs on one thread, whichever the executor gives it.
+// The one place where maps are written. Takes keyframe requests, has the stages work out edits, applies them and publishes a
+// snapshot after each. Runs on one thread, whichever the executor gives it.
+//
+// One map is worked on; others lie dormant, never changed, each in a world of its own (they may come from a loaded atlas).
+// Ids are disjoint over all of them. A request that starts a map puts the one before to sleep; one that hangs on a
+// keyframe of a dormant map wakes that one; a keyframe that shows a place of a dormant map joins the two.
 #pragma once
 
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 
 #include "core/stages/local_mapper.h"
 #include "core/stages/scene_builder.h"
@@ -12,34 +14,22 @@
 #include "core/system/config.h"
 #include "core/system/markers.h"
 #include "core/system/schedule.h"
+#include "core/system/snapshot_cell.h"
 #include "core/system/span_recorder.h"
 
 namespace vsgraphs {
 
-// The newest snapshot, for any thread to take.
-class SnapshotCell {
- public:
-  struct Content {
-    Snapshot snapshot;
-    std::int64_t inserted = 0;  // keyframe requests that are in the snapshot
-  };
-  void publish(Content content);
-  Content take() const;
-  // Waits until at least `count` requests are in, or the cell is closed.
-  void wait_for_inserted(std::int64_t count) const;
-  // Ends all waiting, now and later.
-  void close();
-
- private:
-  mutable std::mutex mutex_;
-  mutable std::condition_variable changed_;
-  Content content_;
-  bool closed_ = false;
-};
-
 class MapOwner {
  public:
-  MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell);
+  // The last of `known` is worked on; maps without keyframes are none.
+  MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known = {});
+
+  // All that a keyframe brings about, in the order of the steps below. The two functions are asked between iterations of the
+  // window's and of the whole map's adjustment.
+  void work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining,
+               const std::function<bool()>& stop_adjusting);
+  // At the end of the run: the map this run made most of is the one given out, with its rooms.
+  void end_run();
 
   // One step each: request -> keyframe in the map; its planes -> map; a late segmentation of a keyframe -> its planes
   // sought again; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
@@ -51,12 +41,18 @@ class MapOwner {
   bool loop_found() const { return loop_edit_.has_value(); }
   void close_loop();
   void adjust_all(const std::function<bool()>& stop);
-  // Loops closed so far.
-  int loops() const { return loops_; }
+  // Where no loop was found: or a place of a dormant map? Then join_maps() makes one of the two, and adjust_all() follows.
+  void look_for_join();
+  bool join_found() const { return join_.has_value(); }
+  void join_maps();
+  // The part of insert() that makes the request's map the one worked on. False if it is already.
+  bool choose_map(const KeyframeRequest& request);
+  // The part of end_run() that does the same with the map this run made most of.
+  bool settle();
   // Whether it is time to seek rooms again; `last`: at the end of the run.
   bool rooms_due() const { return structure_.due(newest_s_); }
   void find_rooms(bool last);
-  // False, and nothing done, if the frame is no keyframe (any more).
+  // False, and nothing done, if the frame is no keyframe (any more) of the map worked on.
   bool label(std::int64_t frame_index, const LabelGrid& labels);
   // Likewise for markers seen in its image.
   bool mark(std::int64_t frame_index, const MarkerDetections& detections);
@@ -64,24 +60,49 @@ class MapOwner {
 
   std::uint64_t version() const { return map_.version(); }
   const std::vector<EditEvent>& edits() const { return edits_; }
+  // Of the map worked on; a copy. Null where rooms are not sought.
+  std::shared_ptr<const FreeSpace> free_space() const;
   // One lane for mapping, one for scene understanding.
   std::vector<const SpanRecorder*> spans() const { return {&spans_, &scene_spans_}; }
 
  private:
-  void apply(const MapEdit& edit, EditEvent event);
-  KeyframeId keyframe_of(std::int64_t frame_index) const;  // invalid if the frame is none
+  struct DormantMap {
+    MapState state;
+    int made = 0;  // keyframes of this run
+    bool loaded = false;
+  };
+  struct FoundJoin {
+    std::size_t dormant = 0;
+    MapJoin join;
+  };
 
+  void apply(const MapEdit& edit, EditEvent event);
+  void publish();
+  void start_from(const AtlasState& known);
+  void put_to_sleep();
+  void drop_small_maps();
+  void wake(std::size_t dormant, EditEvent::Kind why, std::int64_t frame);
+  void open_new_map(std::int64_t frame);
+  void publish_dormant();
+
+  SystemOptions options_;
   Map map_;
   Snapshot snapshot_;
   LocalMapper mapper_;
   SceneBuilder scene_;
   StructureBuilder structure_;
   LoopCloser loop_closer_;
+  PlaceIndexOptions place_options_;
   PlaceIndex places_;
+  std::shared_ptr<const PlaceIndex> published_places_;
+  int made_ = 0;  // keyframes of this run in the map worked on
+  bool loaded_ = false;
+  std::vector<DormantMap> dormant_;  // oldest first
+  std::shared_ptr<const std::vector<MapState>> published_dormant_;
   std::optional<MapEdit> loop_edit_;
-  int loops_ = 0;
+  std::optional<FoundJoin> join_;
+  AtlasCounts counts_;
   MeasurementModel model_;
-  bool closes_loops_;
   SnapshotCell& cell_;
   SpanRecorder spans_, scene_spans_;
   KeyframeId newest_;

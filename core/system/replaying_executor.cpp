@@ -13,10 +13,10 @@ namespace {
 // Serial, but each frame sees the map version it saw in the recorded run.
 class ReplayingExecutor : public Executor {
  public:
-  ReplayingExecutor(const Config& config, const Camera& camera)
+  ReplayingExecutor(const Config& config, const Camera& camera, const AtlasState& known)
       : schedule_(Schedule::read(config.system.replay)),
         tracking_(config, camera),
-        owner_(config, camera, cell_) {}
+        owner_(config, camera, cell_, known) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     if (next_frame_ >= schedule_.frames.size()) return std::nullopt;
@@ -45,7 +45,8 @@ class ReplayingExecutor : public Executor {
     advance_to(schedule_.edits.size());
   }
 
-  Snapshot snapshot() const override { return cell_.take().snapshot; }
+  SnapshotCell::Content content() const override { return cell_.take(); }
+  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return static_cast<std::int64_t>(waiting_.size()); }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
@@ -95,8 +96,20 @@ class ReplayingExecutor : public Executor {
         int left = event.iterations;
         owner_.refine([&left] { return left-- <= 0; });
         owner_.look_for_loop();
+        if (!owner_.loop_found()) owner_.look_for_join();
         break;
       }
+      case EditEvent::Kind::new_map:
+      case EditEvent::Kind::resume:
+        require_run(!waiting_.empty() && owner_.choose_map(*waiting_.front()), departed(event));
+        break;
+      case EditEvent::Kind::join:
+        require_run(owner_.join_found(), departed(event));
+        owner_.join_maps();
+        break;
+      case EditEvent::Kind::settle:
+        require_run(owner_.settle(), departed(event));
+        break;
       case EditEvent::Kind::loop:
         require_run(owner_.loop_found(), departed(event));
         owner_.close_loop();
@@ -129,8 +142,9 @@ class ReplayingExecutor : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera) {
-  return std::make_unique<ReplayingExecutor>(config, camera);
+std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera,
+                                                  const AtlasState& known) {
+  return std::make_unique<ReplayingExecutor>(config, camera, known);
 }
 
 }  // namespace vsgraphs

@@ -15,7 +15,7 @@ namespace vsgraphs {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, EditEvent::Kind>, 9> kinds = {{
+constexpr std::array<std::pair<const char*, EditEvent::Kind>, 13> kinds = {{
     {"insert", EditEvent::Kind::insert},
     {"planes", EditEvent::Kind::planes},
     {"labels", EditEvent::Kind::labels},
@@ -25,6 +25,10 @@ constexpr std::array<std::pair<const char*, EditEvent::Kind>, 9> kinds = {{
     {"loop", EditEvent::Kind::loop},
     {"adjust", EditEvent::Kind::adjust},
     {"refine", EditEvent::Kind::refine},
+    {"new_map", EditEvent::Kind::new_map},
+    {"resume", EditEvent::Kind::resume},
+    {"join", EditEvent::Kind::join},
+    {"settle", EditEvent::Kind::settle},
 }};
 
 std::optional<EditEvent::Kind> kind_named(const std::string& name) {

@@ -8,6 +8,10 @@
 //   rooms FRAME HASH                  rooms, floors and doors were sought
 //   rooms_last FRAME HASH             the same at the end of the run
 //   loop FRAME HASH                   it closed a loop
+//   new_map FRAME HASH                it starts a new map
+//   resume FRAME HASH                 it hangs on a dormant map, which is worked on again
+//   join FRAME HASH                   it showed a place of a dormant map: the two became one
+//   settle FRAME HASH                 at the end: the map this run made most of is taken up again
 //   adjust FRAME ITERATIONS HASH      after which the whole map was adjusted with that many iterations
 //   refine FRAME ITERATIONS HASH      its window was adjusted with that many iterations
 #pragma once
@@ -25,7 +29,21 @@ struct FrameEvent {
 };
 
 struct EditEvent {
-  enum class Kind { insert, planes, labels, markers, rooms, rooms_last, loop, adjust, refine };
+  enum class Kind {
+    insert,
+    planes,
+    labels,
+    markers,
+    rooms,
+    rooms_last,
+    loop,
+    adjust,
+    refine,
+    new_map,
+    resume,
+    join,
+    settle
+  };
   Kind kind = Kind::insert;
   std::int64_t frame = 0;
   int iterations = 0;  // of refine and adjust

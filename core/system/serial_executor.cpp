@@ -8,23 +8,13 @@ namespace {
 
 class SerialExecutor : public Executor {
  public:
-  SerialExecutor(const Config& config, const Camera& camera)
-      : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_) {}
+  SerialExecutor(const Config& config, const Camera& camera, const AtlasState& known)
+      : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_, known) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     TrackedFrame result = tracking_.track(frame, cell_.take());
-    if (result.keyframe_request) {
-      owner_.insert(*result.keyframe_request);
-      if (options_.builds_scene()) owner_.find_planes();
-      if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);
-      owner_.refine([] { return false; });
-      owner_.look_for_loop();
-      if (owner_.loop_found()) {
-        owner_.close_loop();
-        owner_.adjust_all([] { return false; });
-        if (options_.builds_structure()) owner_.find_rooms(false);
-      }
-    }
+    const auto never = [] { return false; };
+    if (result.keyframe_request) owner_.work_on(*result.keyframe_request, never, never);
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
@@ -34,10 +24,11 @@ class SerialExecutor : public Executor {
     owner_.mark(frame_index, *detections);
   }
   void finish() override {
-    if (options_.builds_structure() && tracking_.requested() > 0 && !finished_) owner_.find_rooms(true);
+    if (!finished_) owner_.end_run();
     finished_ = true;
   }
-  Snapshot snapshot() const override { return cell_.take().snapshot; }
+  SnapshotCell::Content content() const override { return cell_.take(); }
+  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return 0; }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
@@ -52,8 +43,9 @@ class SerialExecutor : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera) {
-  return std::make_unique<SerialExecutor>(config, camera);
+std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera,
+                                               const AtlasState& known) {
+  return std::make_unique<SerialExecutor>(config, camera, known);
 }
 
 }  // namespace vsgraphs

@@ -1,5 +1,6 @@
 #include "core/system/slam.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -11,12 +12,28 @@ namespace vsgraphs {
 
 namespace {
 
-std::unique_ptr<Executor> make_executor(const Config& config, const Camera& camera) {
+bool has_keyframes(const AtlasState& known) {
+  return std::any_of(known.maps.begin(), known.maps.end(),
+                     [](const MapState& m) { return m.map->keyframes().size() > 0; });
+}
+
+std::unique_ptr<Executor> make_executor(const Config& config, const Camera& camera, const AtlasState& known) {
   camera.validate();
   config.validate();
-  if (!config.system.replay.empty()) return make_replaying_executor(config, camera);
-  if (config.system.execution == "serial") return make_serial_executor(config, camera);
-  return make_threaded_executor(config, camera);
+  require_input(!config.system.localise_only || has_keyframes(known),
+                "system.localise_only needs a map to locate the camera in; load an atlas that holds one");
+  if (!config.system.replay.empty()) return make_replaying_executor(config, camera, known);
+  if (config.system.execution == "serial") return make_serial_executor(config, camera, known);
+  return make_threaded_executor(config, camera, known);
+}
+
+// Frames of this run come after those of all others that went into the maps.
+std::int64_t first_index_after(const AtlasState& known) {
+  std::int64_t next = 0;
+  for (const MapState& state : known.maps)
+    state.map->keyframes().for_each(
+        [&next](KeyframeId, const Keyframe& k) { next = std::max(next, k.frame_index + 1); });
+  return next;
 }
 
 std::string at_time(double timestamp_s) {
@@ -27,11 +44,16 @@ std::string at_time(double timestamp_s) {
 
 }  // namespace
 
-Slam::Slam(const Config& config, const Camera& camera)
+Slam::Slam(const Config& config, const Camera& camera) : Slam(config, camera, AtlasState{}) {}
+
+Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known)
     : config_(config),
       camera_(camera),
-      executor_(make_executor(config, camera)),
-      last_timestamp_s_(-std::numeric_limits<double>::infinity()) {}
+      executor_(make_executor(config, camera, known)),
+      first_index_(first_index_after(known)),
+      last_timestamp_s_(-std::numeric_limits<double>::infinity()),
+      lost_(has_keyframes(known)),
+      starts_lost_(lost_) {}
 
 Slam::~Slam() = default;
 
@@ -44,7 +66,7 @@ TrackedFrame Slam::track(RgbdFrame frame) {
   require_input(frame.timestamp_s > last_timestamp_s_, "the frame's timestamp " + at_time(frame.timestamp_s) +
                                                            " is not later than the last one's, " +
                                                            at_time(last_timestamp_s_));
-  frame.index = frames_;
+  frame.index = first_index_ + frames_;
   const auto tracked = executor_->track(frame);
   if (!tracked) {
     TrackedFrame skipped;
@@ -53,9 +75,16 @@ TrackedFrame Slam::track(RgbdFrame frame) {
   }
   last_timestamp_s_ = frame.timestamp_s;
   ++frames_;
-  if (has_pose(tracked->status)) records_.push_back({tracked->index, tracked->timestamp_s, tracked->pose});
+  keep_record(*tracked);
   note_status(*tracked);
   return *tracked;
+}
+
+// A frame that starts a map names no keyframe; its own is there when the next frame has been tracked.
+void Slam::keep_record(const TrackedFrame& frame) {
+  if (!records_.empty() && !records_.back().pose.keyframe.valid())
+    records_.back().pose.keyframe = snapshot()->keyframe_of_frame(records_.back().index);
+  if (has_pose(frame.status)) records_.push_back({frame.index, frame.timestamp_s, frame.pose});
 }
 
 void Slam::note_status(const TrackedFrame& frame) {
@@ -63,8 +92,14 @@ void Slam::note_status(const TrackedFrame& frame) {
     warnings_.push_back("tracking was lost at " + at_time(frame.timestamp_s));
     lost_ = true;
   } else if (frame.status == TrackStatus::relocalised) {
-    warnings_.push_back("tracking was recovered (relocalised) at " + at_time(frame.timestamp_s));
-    lost_ = false;
+    warnings_.push_back(starts_lost_
+                            ? "found in the loaded map at " + at_time(frame.timestamp_s)
+                            : "tracking was recovered (relocalised) at " + at_time(frame.timestamp_s));
+    lost_ = starts_lost_ = false;
+  } else if (frame.status == TrackStatus::initialised && lost_) {
+    warnings_.push_back("nothing known was recognised; a new map was started at " +
+                        at_time(frame.timestamp_s));
+    lost_ = starts_lost_ = false;
   }
 }
 
@@ -79,7 +114,15 @@ void Slam::add_markers(std::int64_t frame_index, MarkerDetections detections) {
     executor_->mark(frame_index, std::make_shared<const MarkerDetections>(std::move(detections)));
 }
 
-Snapshot Slam::snapshot() const { return executor_->snapshot(); }
+Snapshot Slam::snapshot() const { return executor_->content().snapshot; }
+
+AtlasState Slam::atlas_state() const {
+  const SnapshotCell::Content content = executor_->content();
+  AtlasState state{*content.dormant};
+  if (content.snapshot->keyframes().size() > 0)
+    state.maps.push_back({content.snapshot, content.places, ended_ ? executor_->free_space() : nullptr});
+  return state;
+}
 
 std::int64_t Slam::backlog() const {
   const std::lock_guard lock(frames_mutex_);
@@ -101,6 +144,7 @@ void Slam::finish() {
   } catch (...) {
     failure = std::current_exception();
   }
+  ended_ = true;
   // The schedule of a run that failed is what one wants to look at.
   if (!config_.system.schedule_out.empty()) executor_->schedule().write(config_.system.schedule_out);
   if (failure) std::rethrow_exception(failure);
@@ -108,17 +152,33 @@ void Slam::finish() {
 
 std::vector<TimedPose> Slam::trajectory() const {
   const std::lock_guard lock(frames_mutex_);
-  const Snapshot map = snapshot();
+  return poses_in(*map_given_out());
+}
+
+Snapshot Slam::map_given_out() const {
+  const SnapshotCell::Content content = executor_->content();
+  Snapshot best = content.snapshot;
+  if (!config_.system.localise_only) return best;
+  std::size_t most = poses_in(*best).size();
+  for (const MapState& other : *content.dormant) {
+    const std::size_t count = poses_in(*other.map).size();
+    if (count <= most) continue;
+    most = count;
+    best = other.map;
+  }
+  return best;
+}
+
+std::vector<TimedPose> Slam::poses_in(const Map& map) const {
   // A frame that became a keyframe is where its keyframe is.
   std::map<std::int64_t, Se3> keyframe_pose;
-  map->keyframes().for_each(
+  map.keyframes().for_each(
       [&](KeyframeId, const Keyframe& k) { keyframe_pose[k.frame_index] = k.world_from_camera; });
   std::vector<TimedPose> result;
   result.reserve(records_.size());
   for (const FrameRecord& record : records_) {
     const auto own = keyframe_pose.find(record.index);
-    const auto pose =
-        own != keyframe_pose.end() ? std::optional<Se3>(own->second) : map->resolve(record.pose);
+    const auto pose = own != keyframe_pose.end() ? std::optional<Se3>(own->second) : map.resolve(record.pose);
     if (pose) result.push_back({record.timestamp_s, *pose});
   }
   return result;
@@ -126,12 +186,26 @@ std::vector<TimedPose> Slam::trajectory() const {
 
 RunStatistics Slam::statistics() const {
   const std::lock_guard lock(frames_mutex_);
+  const SnapshotCell::Content content = executor_->content();
   RunStatistics s;
   s.frames = frames_;
   s.tracked = static_cast<std::int64_t>(records_.size());
   s.waited_s = executor_->waited_s();
-  if (finished_) s.stages = stage_statistics(executor_->spans());
+  s.maps = static_cast<int>(content.dormant->size()) + (content.snapshot->keyframes().size() > 0 ? 1 : 0);
+  s.loops = content.counts.loops;
+  s.merges = content.counts.merges;
+  s.elsewhere = s.tracked - static_cast<std::int64_t>(poses_in(*map_given_out()).size());
   s.warnings = warnings_;
+  if (!finished_) return s;
+  s.stages = stage_statistics(executor_->spans());
+  if (content.counts.dropped_maps > 0)
+    s.warnings.push_back(std::to_string(content.counts.dropped_maps) + " map(s) of fewer than " +
+                         std::to_string(config_.system.min_map_keyframes) +
+                         " keyframes were dropped when a new one began");
+  if (s.elsewhere > 0)
+    s.warnings.push_back(std::to_string(s.elsewhere) +
+                         " tracked frames are in maps that were never joined with the one given out; the "
+                         "trajectory leaves them out");
   return s;
 }
 

@@ -27,6 +27,11 @@ struct RunStatistics {
   std::int64_t frames = 0;   // handed to track()
   std::int64_t tracked = 0;  // of them, with a pose
   double waited_s = 0;       // tracking waiting for mapping
+  int maps = 0;              // that are not joined, the one given out included
+  int loops = 0;             // closed
+  int merges = 0;            // maps joined with another
+  std::int64_t elsewhere =
+      0;  // tracked frames that are in other maps than the one given out, or in none any more
   std::map<std::string, StageStatistics> stages;
   std::vector<std::string> warnings;
 };
@@ -35,6 +40,10 @@ class Slam {
  public:
   // Throws InputError if configuration or camera make no sense, or a schedule to replay cannot be read.
   Slam(const Config& config, const Camera& camera);
+  // Starts from maps made before (none: as above): the camera begins lost, is looked for in them, and starts a map of its own
+  // where it is not found; the two are joined where a place is recognised. Frames are counted on from the last keyframe's.
+  // With system.localise_only the maps stay as they are. Throws InputError where that is asked for without a map.
+  Slam(const Config& config, const Camera& camera, const AtlasState& known);
   ~Slam();
 
   // Tracks one frame; the images are read during the call only. One caller at a time. Throws InputError for a
@@ -54,6 +63,9 @@ class Slam {
 
   // The newest published map; any thread, any time. Cost: one pointer.
   Snapshot snapshot() const;
+  // All maps as last published, the one being worked on last; any thread, any time, tracking is not held up. The free space
+  // of that one is there after finish() alone. Cost: a few pointers, after finish() a copy of the free space.
+  AtlasState atlas_state() const;
   // Keyframes waiting for the mapper.
   std::int64_t backlog() const;
 
@@ -61,7 +73,9 @@ class Slam {
   // wrong in a worker, RunError where a replay departed; the trajectory so far can still be asked for.
   void finish();
 
-  // Poses of all frames that have one, in order, corrected by everything learned since.
+  // Poses of all frames that have one, in order, corrected by everything learned since, in the map of snapshot(): frames in
+  // maps that were never joined with it are left out (see RunStatistics). With system.localise_only: in the map that holds
+  // most of them.
   std::vector<TimedPose> trajectory() const;
   // Any time; the stages are there after finish() alone, as the workers write them until then.
   RunStatistics statistics() const;
@@ -75,6 +89,9 @@ class Slam {
     AnchoredPose pose;
   };
   void note_status(const TrackedFrame& frame);
+  void keep_record(const TrackedFrame& frame);
+  Snapshot map_given_out() const;
+  std::vector<TimedPose> poses_in(const Map& map) const;
 
   // Held while a frame is tracked and while its records are read: a second caller of track() is told so, readers
   // wait for the frame to end.
@@ -85,9 +102,11 @@ class Slam {
   std::vector<FrameRecord> records_;
   std::vector<std::string> warnings_;
   std::int64_t frames_ = 0;
+  std::int64_t first_index_ = 0;
   double last_timestamp_s_;
-  bool lost_ = false;
-  std::atomic<bool> finished_ = false;
+  bool lost_ = false, starts_lost_ = false;
+  std::atomic<bool> finished_ = false;  // no frames come any more
+  std::atomic<bool> ended_ = false;     // and all work is done
 };
 
 }  // namespace vsgraphs

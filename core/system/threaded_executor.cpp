@@ -18,10 +18,10 @@ namespace {
 // The caller's thread tracks; one worker owns the map.
 class ThreadedExecutor : public Executor {
  public:
-  ThreadedExecutor(const Config& config, const Camera& camera)
+  ThreadedExecutor(const Config& config, const Camera& camera, const AtlasState& known)
       : options_(config.system),
         tracking_(config, camera),
-        owner_(config, camera, cell_),
+        owner_(config, camera, cell_, known),
         requests_(queue_capacity) {
     worker_ = std::thread([this] { work(); });
   }
@@ -31,8 +31,8 @@ class ThreadedExecutor : public Executor {
     rethrow_worker_failure();
     TrackedFrame result = tracking_.track(frame, cell_.take());
     if (result.keyframe_request) requests_.push({result.keyframe_request, 0, nullptr, nullptr});
-    // Nothing can be tracked before the first keyframe stands.
-    if (result.status == TrackStatus::initialised) cell_.wait_for_inserted(1);
+    // Nothing can be tracked before a map's first keyframe stands.
+    if (result.status == TrackStatus::initialised) cell_.wait_for_inserted(tracking_.requested());
     if (!options_.realtime) wait_for_mapper();
     return result;
   }
@@ -50,7 +50,8 @@ class ThreadedExecutor : public Executor {
     rethrow_worker_failure();
   }
 
-  Snapshot snapshot() const override { return cell_.take().snapshot; }
+  SnapshotCell::Content content() const override { return cell_.take(); }
+  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
   double waited_s() const override { return waited_s_; }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
@@ -78,17 +79,11 @@ class ThreadedExecutor : public Executor {
         if (work->labels) owner_.label(work->frame, *work->labels);
         if (work->markers) owner_.mark(work->frame, *work->markers);
         if (!work->request) continue;
-        owner_.insert(*work->request);
-        if (options_.builds_scene()) owner_.find_planes();
-        if (options_.builds_structure() && owner_.rooms_due()) owner_.find_rooms(false);
-        owner_.refine([this] { return requests_.size() >= 2; });
-        owner_.look_for_loop();
-        if (!owner_.loop_found()) continue;
-        owner_.close_loop();
-        owner_.adjust_all([this] { return requests_.size() >= adjustment_backlog; });
-        if (options_.builds_structure()) owner_.find_rooms(false);
+        owner_.work_on(
+            *work->request, [this] { return requests_.size() >= 2; },
+            [this] { return requests_.size() >= adjustment_backlog; });
       }
-      if (options_.builds_structure() && owner_.version() > 0) owner_.find_rooms(true);
+      owner_.end_run();
     } catch (const std::exception& error) {
       // Whatever it was, it was not the frame the tracker is at: it must not look like bad input of that frame.
       failure_ = std::make_exception_ptr(std::runtime_error(std::string("mapping failed: ") + error.what()));
@@ -129,8 +124,9 @@ class ThreadedExecutor : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera) {
-  return std::make_unique<ThreadedExecutor>(config, camera);
+std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera,
+                                                 const AtlasState& known) {
+  return std::make_unique<ThreadedExecutor>(config, camera, known);
 }
 
 }  // namespace vsgraphs

@@ -1,6 +1,8 @@
 // The tracker with its clock and its log of which map version each frame saw; shared by all executors.
 #pragma once
 
+#include <limits>
+
 #include "core/stages/tracker.h"
 #include "core/system/config.h"
 #include "core/system/map_owner.h"
@@ -12,7 +14,8 @@ namespace vsgraphs {
 class TrackingLane {
  public:
   TrackingLane(const Config& config, const Camera& camera)
-      : tracker_(config.tracker, config.orb, camera, static_cast<std::uint64_t>(config.system.seed)),
+      : localise_only_(config.system.localise_only),
+        tracker_(tracker_options(config), config.orb, camera, static_cast<std::uint64_t>(config.system.seed)),
         spans_("tracking") {}
 
   TrackedFrame track(const RgbdFrame& frame, const SnapshotCell::Content& content) {
@@ -20,9 +23,11 @@ class TrackingLane {
     TrackedFrame result;
     {
       const Span span(&spans_, "track");
-      result =
-          tracker_.track(frame, content.snapshot, static_cast<int>(requested_ - content.inserted), &spans_);
+      KnownMaps known{{content.snapshot, content.places}, {}};
+      for (const MapState& map : *content.dormant) known.dormant.push_back({map.map, map.places});
+      result = tracker_.track(frame, known, static_cast<int>(requested_ - content.inserted), &spans_);
     }
+    if (localise_only_) result.keyframe_request.reset();
     frames_.push_back({frame.index, frame.timestamp_s, content.snapshot->version()});
     if (result.keyframe_request) ++requested_;
     return result;
@@ -33,6 +38,13 @@ class TrackingLane {
   const std::vector<FrameEvent>& frames() const { return frames_; }
 
  private:
+  static TrackerOptions tracker_options(const Config& config) {
+    TrackerOptions options = config.tracker;
+    if (config.system.localise_only) options.new_map_after_s = std::numeric_limits<double>::infinity();
+    return options;
+  }
+
+  bool localise_only_;
   Tracker tracker_;
   SpanRecorder spans_;
   std::vector<FrameEvent> frames_;

@@ -6,7 +6,6 @@
 
 #include "core/base/check.h"
 #include "core/base/rng.h"
-#include "core/vision/place_candidates.h"
 #include "core/vision/rotation_vote.h"
 
 namespace vsgraphs {
@@ -213,22 +212,6 @@ TEST(ConsistentRotation, WrapsAroundAndKeepsNeighbours) {
   for (std::size_t i = 0; i + 1 < turns.size(); ++i) EXPECT_TRUE(kept[i]) << i;
   EXPECT_FALSE(kept.back());
   EXPECT_TRUE(consistent_rotation({}).empty());
-}
-
-TEST(PlaceCandidates, RanksTheSamePlaceFirst) {
-  const Pair s = shuffled_pair(100, 20), elsewhere = shuffled_pair(100, 0);
-  Rng rng(9, "elsewhere", 0);
-  std::vector<Descriptor> strange;
-  for (int i = 0; i < 100; ++i) strange.push_back(random_descriptor(rng));
-  const FeatureSet stranger(s.a.features(), strange, 640, 480);
-  const std::vector<KnownPlace> places{{11, &stranger}, {12, &s.b}, {13, &elsewhere.a}};
-  const std::vector<PlaceCandidate> found = find_place_candidates(s.a, places, {});
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].id, 12);
-  EXPECT_DOUBLE_EQ(found[0].score, 1.0);
-  EXPECT_EQ(find_place_candidates(s.a, places, {.max_candidates = 1}).size(), 1u);
-  EXPECT_TRUE(find_place_candidates(FeatureSet{}, places, {}).empty());
-  EXPECT_THROW(find_place_candidates(s.a, places, {.strongest = 0}), InputError);
 }
 
 }  // namespace

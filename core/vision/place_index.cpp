@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 
@@ -122,6 +123,29 @@ void PlaceIndex::add(KeyframeId keyframe, const FeatureSet& features) {
   segments_.push_back(
       std::make_shared<const PlaceSegment>(keyframe, features, options_.features_per_keyframe));
   compact();
+}
+
+bool PlaceIndex::restore(std::vector<PlaceSegment::Content> segments) {
+  const auto known = [this](std::uint32_t index) { return index < ids_.size() && ids_[index].valid(); };
+  if (removed_.size() != ids_.size() || options_.features_per_keyframe < 0) return false;
+  size_ = 0;
+  for (std::uint32_t i = 0; i < ids_.size(); ++i) {
+    if (ids_[i].valid() && ids_[i].index != i) return false;
+    if (ids_[i].valid() && removed_[i] == 0) ++size_;
+  }
+  segments_.clear();
+  for (PlaceSegment::Content& content : segments) {
+    const auto by_key = [](const PlaceSignature& a, const PlaceSignature& b) { return a.key() < b.key(); };
+    const bool fits = content.owners.size() == content.signatures.size() && !content.keyframes.empty() &&
+                      std::is_sorted(content.signatures.begin(), content.signatures.end(), by_key) &&
+                      std::all_of(content.owners.begin(), content.owners.end(),
+                                  [&](auto o) { return known(o.keyframe()); }) &&
+                      std::all_of(content.keyframes.begin(), content.keyframes.end(),
+                                  [&](auto id) { return known(id.index); });
+    if (!fits) return false;
+    segments_.push_back(std::make_shared<const PlaceSegment>(std::move(content)));
+  }
+  return true;
 }
 
 void PlaceIndex::compact() {

@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/base/options.h"
 #include "core/map/features.h"
 #include "core/map/ids.h"
@@ -28,6 +29,11 @@ struct PlaceIndexOptions {
   int features_per_keyframe = 600;
   int max_distance = 25;
 };
+template <FieldsOf<PlaceIndexOptions> T>
+void visit_fields(T& v, auto& field) {
+  auto& [features_per_keyframe, max_distance] = v;
+  field(features_per_keyframe, max_distance);
+}
 
 template <typename Visitor>
 void describe(PlaceIndexOptions& o, Visitor& field) {
@@ -64,7 +70,19 @@ class PlaceIndex {
   std::vector<PlaceMatch> query(const FeatureSet& features, int max_results,
                                 std::span<const std::uint8_t> excluded = {}) const;
 
+  // Declares its content to an archive; what it reads is checked.
+  template <FieldsOf<PlaceIndex> T>
+  friend void visit_fields(T& v, auto& field) {
+    std::vector<PlaceSegment::Content> segments;
+    for (const auto& segment : v.segments_) segments.push_back(segment->content());
+    field(v.options_, v.ids_, v.removed_, segments);
+    if constexpr (std::remove_reference_t<decltype(field)>::reads)
+      field.require(v.restore(std::move(segments)), "a place index that does not fit together");
+  }
+
  private:
+  // Takes over segments that were read, after ids and removals; false if the one does not fit the other.
+  bool restore(std::vector<PlaceSegment::Content> segments);
   void compact();
   void drop_removed();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/base/check.h"
 
@@ -17,6 +18,16 @@ constexpr std::size_t bucket_count = std::size_t{1} << PlaceSignature::key_bits;
 std::uint8_t PlaceSegment::angle_steps(float angle_rad) {
   return static_cast<std::uint8_t>(std::lround(static_cast<double>(angle_rad) * 128.0 / std::numbers::pi) &
                                    0xff);
+}
+
+PlaceSegment::PlaceSegment(Content content)
+    : keyframes_(std::move(content.keyframes)),
+      begin_(bucket_count + 1, 0),
+      signatures_(std::move(content.signatures)),
+      owners_(std::move(content.owners)) {
+  VSG_INVARIANT(signatures_.size() == owners_.size());
+  for (const PlaceSignature& signature : signatures_) ++begin_[signature.key() + 1];
+  for (std::size_t k = 0; k < bucket_count; ++k) begin_[k + 1] += begin_[k];
 }
 
 PlaceSegment::PlaceSegment(KeyframeId keyframe, const FeatureSet& features, int count)

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/map/features.h"
 #include "core/map/ids.h"
 
@@ -23,6 +24,11 @@ struct PlaceSignature {
     return std::popcount(low ^ other.low) + std::popcount(high ^ other.high);
   }
 };
+template <FieldsOf<PlaceSignature> T>
+void visit_fields(T& v, auto& field) {
+  auto& [low, high] = v;
+  field(low, high);
+}
 
 class PlaceSegment {
  public:
@@ -33,7 +39,21 @@ class PlaceSegment {
     std::uint32_t packed = 0;
     std::uint32_t keyframe() const { return packed >> 8; }
     std::uint8_t angle() const { return static_cast<std::uint8_t>(packed); }
+
+    template <FieldsOf<Owner> T>
+    friend void visit_fields(T& v, auto& field) {
+      field(v.packed);
+    }
   };
+
+  // What it is made from: as many owners as signatures, in the order of the signatures' keys.
+  struct Content {
+    std::vector<KeyframeId> keyframes;
+    std::vector<PlaceSignature> signatures;
+    std::vector<Owner> owners;
+  };
+  explicit PlaceSegment(Content content);
+  Content content() const { return {keyframes_, signatures_, owners_}; }
 
   // Of one keyframe's first `count` features.
   PlaceSegment(KeyframeId keyframe, const FeatureSet& features, int count);
@@ -62,5 +82,11 @@ class PlaceSegment {
   std::vector<PlaceSignature> signatures_;
   std::vector<Owner> owners_;
 };
+
+template <FieldsOf<PlaceSegment::Content> T>
+void visit_fields(T& v, auto& field) {
+  auto& [keyframes, signatures, owners] = v;
+  field(keyframes, signatures, owners);
+}
 
 }  // namespace vsgraphs

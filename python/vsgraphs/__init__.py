@@ -14,11 +14,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vsgraphs._core import Atlas as Atlas
+    from vsgraphs._core import AtlasState as AtlasState
     from vsgraphs._core import Camera as Camera
     from vsgraphs._core import Config as Config
     from vsgraphs._core import Slam as Slam
     from vsgraphs._core import Snapshot as Snapshot
     from vsgraphs._core import TrackResult as TrackResult
+    from vsgraphs._core import load_atlas as load_atlas
     from vsgraphs.datasets import Calibration as Calibration
     from vsgraphs.datasets import Sequence as Sequence
     from vsgraphs.datasets import open_sequence as open_sequence
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
     from vsgraphs.evaluate import evaluate as evaluate
     from vsgraphs.trajectory import Trajectory as Trajectory
 
-_CORE = ("Camera", "Config", "Slam", "Snapshot", "TrackResult")
+_CORE = ("Atlas", "AtlasState", "Camera", "Config", "Slam", "Snapshot", "TrackResult", "load_atlas")
 _PYTHON = {
     "Calibration": "vsgraphs.datasets",
     "FrameError": "vsgraphs.errors",
@@ -39,6 +42,8 @@ _PYTHON = {
 }
 
 __all__ = [
+    "Atlas",
+    "AtlasState",
     "Calibration",
     "Camera",
     "Config",
@@ -50,6 +55,7 @@ __all__ = [
     "TrackResult",
     "Trajectory",
     "evaluate",
+    "load_atlas",
     "open_sequence",
 ]
 

@@ -114,6 +114,24 @@ def run(
     ] = None,
     web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
     view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+    save_atlas: Annotated[
+        Path | None, typer.Option(help="Save all maps in this file at the end, Ctrl-C included.")
+    ] = None,
+    load_atlas: Annotated[Path | None, typer.Option(help="Go on in the maps of this file.")] = None,
+    localise_only: Annotated[
+        bool,
+        typer.Option(
+            "--localise-only", help="Only locate the camera in --load-atlas; the maps stay as they are."
+        ),
+    ] = False,
+    autosave: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            min=0.1,
+            help="Save this often meanwhile too, in --save-atlas or atlas.vsg in --out.",
+        ),
+    ] = None,
 ) -> None:
     """Track a camera through a recorded sequence and build the map."""
     with told():
@@ -127,6 +145,7 @@ def run(
             "system.seed": seed,
             "system.schedule_out": None if schedule_out is None else str(schedule_out),
             "system.replay": None if replay is None else str(replay),
+            "system.localise_only": localise_only or None,
         }
         request = RunRequest(
             source=source,
@@ -138,6 +157,9 @@ def run(
             markers=markers,
             config_file=config,
             assignments=list(set_ or []),
+            save_atlas=save_atlas,
+            load_atlas=load_atlas,
+            autosave_s=autosave,
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
             showing=Showing(view, record, view_port, web),
         )
@@ -256,6 +278,18 @@ def simulate(
         )
         code = make_sequence(plan, out, seed=seed, noise=noise, frames=frames, output=output)
     raise typer.Exit(code)
+
+
+@app.command()
+def info(
+    file: Annotated[Path, typer.Argument(help="An atlas that `run --save-atlas` left.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Print what a saved atlas holds and what it was made with."""
+    with told():
+        from vsgraphs.cli.show_atlas import show_atlas
+
+        show_atlas(file, as_json=as_json)
 
 
 @app.command(

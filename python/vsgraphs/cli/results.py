@@ -59,6 +59,7 @@ class RunOutcome:
     segmentation: KeyframeSegmentation | None = None
     view: RunView | None = None
     markers: MarkerOutcome | None = None
+    warnings: list[str] = field(default_factory=list)  # of saving meanwhile
 
 
 def write_results(outcome: RunOutcome) -> dict[str, Any]:
@@ -171,6 +172,9 @@ def run_report(
         "skipped": dict(sorted({**outcome.sequence.skipped, **outcome.tally.skipped}.items())),
         "keyframes": keyframes,
         "landmarks": landmarks,
+        "maps": statistics["maps"],
+        "loops": statistics["loops"],
+        "merges": statistics["merges"],
         "scene": _scene_counts(graph),
         "wall_s": outcome.wall_s,
         "waited_s": float(statistics["waited_s"]),
@@ -198,6 +202,7 @@ def run_report(
         "warnings": [
             *outcome.sequence.warnings,
             *outcome.tally.warnings,
+            *outcome.warnings,
             *(outcome.segmentation.warnings if outcome.segmentation else ()),
             *(outcome.view.warnings if outcome.view else ()),
             *([*outcome.markers.search.warnings, *outcome.markers.warnings] if outcome.markers else ()),

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
+from vsgraphs.cli.atlas_files import AtlasFiles
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
 from vsgraphs.cli.progress import Progress
@@ -49,6 +50,9 @@ class RunRequest:
     assignments: list[str] = field(default_factory=list)
     shortcuts: dict[str, Value] = field(default_factory=dict)
     showing: Showing = field(default_factory=Showing)
+    save_atlas: Path | None = None
+    load_atlas: Path | None = None
+    autosave_s: float | None = None
 
 
 def run_sequence(request: RunRequest) -> int:
@@ -59,6 +63,7 @@ def run_sequence(request: RunRequest) -> int:
     sought = _sought_markers(request.markers, sequence)
     prepare_directory(request.out)
     _check_schedule_out(request)
+    atlas = AtlasFiles.of(request)
     view = RunView(request.showing)
     frames = sequence.frames[: request.max_frames]
     _announce(sequence)
@@ -66,7 +71,7 @@ def run_sequence(request: RunRequest) -> int:
         from vsgraphs.compiled import core
 
         config = make_config(core(), request)
-        slam = core().Slam(config, sequence.camera)
+        slam = atlas.start(core(), config, sequence.camera)
         with Interrupt() as interrupt:
             progress = Progress(len(frames))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
@@ -79,19 +84,15 @@ def run_sequence(request: RunRequest) -> int:
             )
             session = Session(tracker, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
-            failure = _attempt(session.run)
+            with atlas.saved_meanwhile(slam, progress.event):
+                failure = _attempt(session.run)
             loaded.close()
             progress.clear()
-            if session.tally.interrupted:
-                print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
-            stopped = session.tally.interrupted or failure is not None
-            limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
-            draining = _attempt(lambda: _drain(segmentation, markers, limit_s, interrupt.requested))
-            failure = failure or draining or _attempt(slam.finish)  # the first trouble is the one to tell
+            failure = _end(slam, segmentation, markers, session, interrupt, failure)
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
-            outcome.segmentation, outcome.view = segmentation, view
+            outcome.segmentation, outcome.view, outcome.warnings = segmentation, view, atlas.warnings
             outcome.markers = _marker_outcome(request, sought, markers)
-            report = _write(outcome, failure)
+            report, failure = _leave(outcome, atlas, failure)
     if failure is not None:
         raise failure
     if not report["tracked"] and not session.tally.interrupted:
@@ -211,15 +212,34 @@ def _attempt(step: Callable[[], object]) -> Exception | None:
     return None
 
 
-def _write(outcome: RunOutcome, failure: Exception | None) -> dict[str, Any]:
+def _end(
+    slam: Any,
+    segmentation: KeyframeSegmentation | None,
+    markers: KeyframeMarkers | None,
+    session: Session,
+    interrupt: Interrupt,
+    failure: Exception | None,
+) -> Exception | None:
+    """Has the work under way ended; the first trouble is the one to tell."""
+    if session.tally.interrupted:
+        print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
+    stopped = session.tally.interrupted or failure is not None
+    limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
+    draining = _attempt(lambda: _drain(segmentation, markers, limit_s, interrupt.requested))
+    return failure or draining or _attempt(slam.finish)
+
+
+def _leave(
+    outcome: RunOutcome, atlas: AtlasFiles, failure: Exception | None
+) -> tuple[dict[str, Any], Exception | None]:
+    """Writes results and atlas, the one even where the other cannot be: run.json's content, first trouble."""
     if outcome.view is not None:
         outcome.view.close()  # what came of it is written too
-    try:
-        return write_results(outcome)
-    except Exception:
-        if failure is not None:  # the first trouble is the one to tell
-            raise failure from None
-        raise
+    report: dict[str, Any] = {}
+    for step in (lambda: report.update(write_results(outcome)), lambda: atlas.save(outcome.slam)):
+        trouble = _attempt(step)
+        failure = failure or trouble
+    return report, failure
 
 
 def make_config(core: Any, request: RunRequest) -> Any:

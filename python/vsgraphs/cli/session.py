@@ -118,7 +118,8 @@ class Session:
         elif status in ("ok", "relocalised", "initialised") and self._lost_since is not None:
             gone = frame.timestamp - self._lost_since
             self._lost_since = None
-            self._tell(f"relocalised at frame {frame.index} ({frame.timestamp:.3f} s), lost for {gone:.2f} s")
+            found = "new map" if status == "initialised" else "relocalised"
+            self._tell(f"{found} at frame {frame.index} ({frame.timestamp:.3f} s), lost for {gone:.2f} s")
 
     def _skip(self, reason: str, message: str | None) -> None:
         skipped = self.tally.skipped

@@ -1,0 +1,138 @@
+// Saved atlases.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings/bind.h"
+#include "build_info.h"
+#include "core/base/atomic_file.h"
+#include "core/base/check.h"
+#include "core/system/atlas_file.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace vsgraphs {
+
+namespace {
+
+SavedAtlas atlas_of(const AtlasState& state, const Config& config, const Camera& camera,
+                    std::vector<std::string> map_names) {
+  require_input(map_names.empty() || map_names.size() == state.maps.size(),
+                "map_names: give one per map, or none");
+  return {state,
+          camera,
+          configuration_text(config),
+          nb::cast<std::string>(nb::module_::import_("vsgraphs.version").attr("version")()),
+          VSGRAPHS_COMMIT,
+          std::move(map_names)};
+}
+
+std::shared_ptr<Map> snapshot_of(const SavedAtlas& atlas, std::int64_t number) {
+  const auto maps = static_cast<std::int64_t>(atlas.state.maps.size());
+  const std::int64_t index = number < 0 ? number + maps : number;
+  if (index < 0 || index >= maps)
+    throw nb::index_error(("map " + std::to_string(number) + " of " + std::to_string(maps)).c_str());
+  return std::const_pointer_cast<Map>(atlas.state.maps[static_cast<std::size_t>(index)].map);
+}
+
+void put(nb::dict& d, const MapCounts& counts) {
+  d["keyframes"] = counts.keyframes;
+  d["landmarks"] = counts.landmarks;
+  d["planes"] = counts.planes;
+  d["rooms"] = counts.rooms;
+  d["floors"] = counts.floors;
+  d["doors"] = counts.doors;
+}
+
+nb::dict info_of(const SavedAtlas& atlas) {
+  nb::dict info, camera;
+  camera["width"] = atlas.camera.width;
+  camera["height"] = atlas.camera.height;
+  camera["fx"] = atlas.camera.fx;
+  camera["fy"] = atlas.camera.fy;
+  camera["cx"] = atlas.camera.cx;
+  camera["cy"] = atlas.camera.cy;
+  MapCounts all;
+  nb::list each;
+  for (std::size_t i = 0; i < atlas.state.maps.size(); ++i) {
+    const MapCounts counts = count(*atlas.state.maps[i].map);
+    all += counts;
+    nb::dict d;
+    d["name"] = atlas.map_names.empty() ? nb::none() : nb::cast(atlas.map_names[i]);
+    put(d, counts);
+    each.append(d);
+  }
+  info["format"] = atlas.format;
+  info["program"] = atlas.program;
+  info["commit"] = atlas.commit;
+  info["mode"] = configured(atlas.configuration, "system.mode");
+  info["camera"] = camera;
+  info["maps"] = atlas.state.maps.size();
+  put(info, all);
+  info["each"] = each;
+  return info;
+}
+
+}  // namespace
+
+void bind_atlas(nb::module_& m) {
+  nb::class_<SavedAtlas>(
+      m, "Atlas",
+      "All maps of a run with what they were made with: what an atlas file holds (docs/atlas.md).")
+      .def(
+          "__init__",
+          [](SavedAtlas* self, const AtlasState& state, const Config& config, const Camera& camera,
+             std::vector<std::string> map_names) {
+            new (self) SavedAtlas(atlas_of(state, config, camera, std::move(map_names)));
+          },
+          "state"_a, "config"_a, "camera"_a, "map_names"_a = std::vector<std::string>{},
+          "Args:\n"
+          "  state: Slam.atlas_state().\n"
+          "  config, camera: those of the run.\n"
+          "  map_names: one per map, or none.\n\n"
+          "Raises InputError for names that are not one per map.")
+      .def(
+          "save", [](const SavedAtlas& atlas, const std::filesystem::path& path) { save_atlas(path, atlas); },
+          "path"_a, nb::call_guard<nb::gil_scoped_release>(),
+          "Writes the file as a whole or not at all: an old file stays until the new one is complete. Raises "
+          "InputError\n"
+          "naming the file and the cause. About 1 ms per keyframe.")
+      .def("info", &info_of, nb::sig("def info(self) -> dict[str, typing.Any]"),
+           "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors "
+           "of "
+           "all maps;\n"
+           "each: a list with the same counts and the name per map.")
+      .def("snapshot", &snapshot_of, "number"_a = -1,
+           "The map of this number; the last one is the one worked on. Raises IndexError.")
+      .def("__len__", [](const SavedAtlas& atlas) { return atlas.state.maps.size(); })
+      .def_prop_ro(
+          "empty", [](const SavedAtlas& atlas) { return is_empty(atlas.state); }, "no map has a keyframe")
+      .def_ro("state", &SavedAtlas::state, "what Slam starts from")
+      .def_ro("camera", &SavedAtlas::camera)
+      .def_ro("configuration", &SavedAtlas::configuration,
+              "lines \"key: value\", as `vsgraphs run --config` reads them")
+      .def(
+          "require_fit",
+          [](const SavedAtlas& atlas, const Config& config, const Camera& camera, const std::string& name) {
+            require_fit(name, atlas, config, camera);
+          },
+          "config"_a, "camera"_a, "name"_a = "the atlas",
+          "Raises InputError, naming both values and the cure, if a run with this configuration and camera "
+          "cannot go on in\n"
+          "the atlas: images of another size, another lens, another image pyramid, or a mode that would "
+          "leave "
+          "walls or rooms\n"
+          "untended. `name` stands for the atlas in the message.");
+  m.def(
+      "load_atlas", &load_atlas, "path"_a, nb::call_guard<nb::gil_scoped_release>(),
+      "Reads a saved atlas. Raises InputError, one line that names the file, where it cannot be read, is no "
+      "atlas, is\n"
+      "damaged or was saved by a newer version. About 1 ms per keyframe.");
+  m.def("require_writable", &require_writable, "path"_a,
+        "Raises the InputError that saving a file of this name would raise; writes nothing that stays.");
+}
+
+}  // namespace vsgraphs

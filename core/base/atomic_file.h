@@ -1,0 +1,32 @@
+// Files that nobody ever sees half of.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vsgraphs {
+
+// Writes the parts one after the other beside `path` (as .NAME.part, locked against a second writer), has them reach the
+// disk, and renames. A process that dies meanwhile leaves the old file and at most that one part. Throws InputError naming
+// the file and the cause (no space, no permission, a folder that is missing); the old file then stays.
+void write_file_atomically(const std::filesystem::path& path,
+                           const std::vector<std::span<const std::byte>>& parts);
+
+// Throws what write_file_atomically() would throw for want of a folder, of permission, or because something else than a
+// file has that name; writes nothing that stays.
+void require_writable(const std::filesystem::path& path);
+
+struct FileContent {
+  std::unique_ptr<std::byte[]> data;
+  std::size_t size = 0;
+  std::span<const std::byte> bytes() const { return {data.get(), size}; }
+};
+
+// All of a regular file. Throws InputError naming it and what is wrong.
+FileContent read_file(const std::filesystem::path& path);
+
+}  // namespace vsgraphs

@@ -1,0 +1,104 @@
+#include "core/system/atlas_file.h"
+
+#include <utility>
+
+#include "core/base/atomic_file.h"
+#include "core/base/check.h"
+#include "core/map/map_archive.h"
+
+namespace vsgraphs {
+
+namespace {
+
+std::string prefix(std::uint32_t number) { return "map" + std::to_string(number); }
+
+// Where an older version of the format would have to be understood, this is the place: `archive.version()` says it.
+MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
+  MapState state;
+  state.map = std::make_shared<const Map>(load_map(archive, name));
+  if (archive.has(name + "/places")) {
+    auto places = std::make_shared<PlaceIndex>();
+    archive.read(name + "/places", *places);
+    state.places = std::move(places);
+  }
+  if (archive.has(name + "/free_space")) {
+    auto free_space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
+    archive.read(name + "/free_space", *free_space);
+    state.free_space = std::move(free_space);
+  }
+  return state;
+}
+
+}  // namespace
+
+void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
+  VSG_INVARIANT(atlas.map_names.empty() || atlas.map_names.size() == atlas.state.maps.size());
+  archive.add("origin", atlas.program, atlas.commit);
+  archive.add("camera", atlas.camera);
+  archive.add("configuration", atlas.configuration);
+  archive.add("maps", static_cast<std::uint32_t>(atlas.state.maps.size()), atlas.map_names);
+  std::uint32_t number = 0;
+  for (const MapState& state : atlas.state.maps) {
+    const std::string name = prefix(number++);
+    save_map(archive, name, *state.map);
+    if (state.places) archive.add(name + "/places", *state.places);
+    if (state.free_space) archive.add(name + "/free_space", *state.free_space);
+  }
+}
+
+SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes) {
+  ArchiveReader archive(name, bytes, atlas_kind);
+  SavedAtlas atlas;
+  atlas.format = archive.version();
+  archive.read("origin", atlas.program, atlas.commit);
+  archive.read("camera", atlas.camera);
+  archive.read("configuration", atlas.configuration);
+  try {
+    atlas.camera.validate();
+  } catch (const InputError& error) {
+    archive.damaged(error.what());
+  }
+  std::uint32_t maps = 0;
+  archive.read("maps", maps, atlas.map_names);
+  if (!atlas.map_names.empty() && atlas.map_names.size() != maps)
+    archive.damaged("maps and names differ in number");
+  load_shared_constants(archive);
+  for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i)));
+  return atlas;
+}
+
+void save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas) {
+  ArchiveWriter archive(atlas_kind);
+  write_atlas(archive, atlas);
+  write_file_atomically(path, archive.finish());
+}
+
+SavedAtlas load_atlas(const std::filesystem::path& path) {
+  const FileContent content = read_file(path);
+  return read_atlas(path.string(), content.bytes());
+}
+
+MapCounts count(const Map& map) {
+  const FoundStructure& structure = map.structure();
+  return {map.keyframes().size(), map.landmarks().size(),  map.planes().size(),
+          structure.rooms.size(), structure.floors.size(), structure.doors.size()};
+}
+
+MapCounts& MapCounts::operator+=(const MapCounts& other) {
+  keyframes += other.keyframes;
+  landmarks += other.landmarks;
+  planes += other.planes;
+  rooms += other.rooms;
+  floors += other.floors;
+  doors += other.doors;
+  return *this;
+}
+
+bool is_empty(const AtlasState& state) {
+  for (const MapState& one : state.maps) {
+    if (one.map->keyframes().size() > 0) return false;
+  }
+  return true;
+}
+
+}  // namespace vsgraphs

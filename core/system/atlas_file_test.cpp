@@ -1,0 +1,215 @@
+#include "core/system/atlas_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/check.h"
+#include "core/base/rng.h"
+#include "core/map/test_map.h"
+
+namespace vsgraphs {
+namespace {
+
+// Two keyframes with landmarks and depth; `first_name` sets how the points look, so that two maps differ.
+MapState some_map(int first_name) {
+  Map map;
+  const Camera camera;
+  const auto points = test::point_grid(8, 6);
+  std::vector<KeyframeId> keyframes;
+  auto places = std::make_shared<PlaceIndex>();
+  auto space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
+  for (int i = 0; i < 3; ++i) {
+    Keyframe keyframe = test::keyframe_seeing(camera, test::standing_at(0.2 * i), points, first_name);
+    DepthGrid grid;
+    grid.columns = 4;
+    grid.rows = 1;
+    for (int s = 0; s < 4; ++s)
+      grid.samples.push_back({{0.2F * static_cast<float>(s), 0, 2}, -Eigen::Vector3f::UnitZ()});
+    keyframe.surface = std::make_shared<const DepthGrid>(std::move(grid));
+    keyframes.push_back(test::add_keyframe(map, keyframe));
+    places->add(keyframes.back(), *keyframe.features);
+    space->integrate(keyframes.back(), keyframe.surface, keyframe.world_from_camera);
+  }
+  test::add_landmarks(map, points, keyframes);
+  map.apply(RemoveKeyframe{keyframes[1], keyframes[0]});
+  places->remove(keyframes[1]);
+  map.apply(MapEdit{});
+  return {map.snapshot(), std::move(places), std::move(space)};
+}
+
+SavedAtlas some_atlas() {
+  SavedAtlas atlas;
+  atlas.state.maps = {some_map(0), some_map(100)};
+  atlas.state.maps[0].free_space = nullptr;  // as a map has it on which nothing goes on
+  atlas.camera.distortion = {0.1, -0.2, 0.001, 0.002, 0};
+  atlas.configuration = configuration_text(Config{});
+  atlas.program = "1.2.3";
+  atlas.commit = "abc";
+  atlas.map_names = {"downstairs", ""};
+  return atlas;
+}
+
+Bytes bytes_of(const SavedAtlas& atlas) {
+  ArchiveWriter archive(atlas_kind);
+  write_atlas(archive, atlas);
+  Bytes all;
+  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+std::string error_of(std::span<const std::byte> bytes) {
+  try {
+    read_atlas("FILE", bytes);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(AtlasFile, SavingWhatWasLoadedGivesTheSameBytes) {
+  const std::filesystem::path path = testing::TempDir() + "atlas_file_test.vsg";
+  const SavedAtlas atlas = some_atlas();
+  save_atlas(path, atlas);
+  const SavedAtlas back = load_atlas(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(bytes_of(back), bytes_of(atlas));
+  ASSERT_EQ(back.state.maps.size(), 2U);
+  EXPECT_EQ(back.state.maps[0].free_space, nullptr);
+  EXPECT_EQ(back.state.maps[1].free_space->views().size(), 3U);
+  EXPECT_EQ(back.state.maps[1].places->size(), 2);
+  // What a keyframe and the free space share is one object again.
+  const Map& map = *back.state.maps[1].map;
+  const KeyframeId first = map.keyframes().at_index(0);
+  EXPECT_EQ(map.keyframes().find(first)->surface, back.state.maps[1].free_space->views().at(first).depth);
+  EXPECT_EQ(back.map_names, atlas.map_names);
+  EXPECT_EQ(back.program, "1.2.3");
+  EXPECT_EQ(back.camera.distortion, atlas.camera.distortion);
+  EXPECT_EQ(count(map).keyframes, 2U);
+  EXPECT_EQ(count(map).landmarks, 48U);
+}
+
+TEST(AtlasFile, MapsWithoutKeyframesAndNoMapsAreAtlasesToo) {
+  SavedAtlas atlas;
+  EXPECT_TRUE(is_empty(read_atlas("FILE", bytes_of(atlas)).state));
+  atlas.state.maps.push_back({std::make_shared<const Map>(), nullptr, nullptr});
+  const SavedAtlas back = read_atlas("FILE", bytes_of(atlas));
+  EXPECT_EQ(back.state.maps.size(), 1U);
+  EXPECT_TRUE(is_empty(back.state));
+  EXPECT_FALSE(is_empty(some_atlas().state));
+}
+
+TEST(AtlasFile, DamageAnywhereIsOneError) {
+  const Bytes whole = bytes_of(some_atlas());
+  Rng rng(1, "atlas_file_test", 0);
+  const auto place = [&] { return rng.index(static_cast<std::uint32_t>(whole.size())); };
+  for (int round = 0; round < 300; ++round) {
+    Bytes flipped = whole;
+    flipped[place()] ^= static_cast<std::byte>(1U << rng.index(8));
+    const std::string error = error_of(flipped);
+    EXPECT_THAT(error, testing::StartsWith("FILE: "));
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+    EXPECT_THAT(error_of(std::span(whole).first(place())), testing::StartsWith("FILE: is damaged"));
+  }
+}
+
+// Under right checksums, as somebody might make one on purpose: an atlas or InputError, never a crash.
+TEST(AtlasFile, ForgedSectionsAreErrorsOrAtlases) {
+  const Bytes whole = bytes_of(some_atlas());
+  const ArchiveReader original("FILE", whole, atlas_kind);
+  const auto names = original.names();
+  Rng rng(2, "atlas_file_test", 0);
+  int errors = 0, atlases = 0;
+  for (int round = 0; round < 400; ++round) {
+    const std::string& chosen = names[rng.index(static_cast<std::uint32_t>(names.size()))];
+    ArchiveWriter forged(atlas_kind);
+    for (const std::string& name : names) {
+      Bytes bytes(original.section(name).begin(), original.section(name).end());
+      if (name == chosen && !bytes.empty()) {
+        bytes[rng.index(static_cast<std::uint32_t>(std::min<std::size_t>(bytes.size(), 400)))] =
+            static_cast<std::byte>(rng.index(2) ? rng.index(8) : rng.next());
+      }
+      forged.add_bytes(name, std::move(bytes));
+    }
+    Bytes bytes;
+    for (const auto& part : forged.finish()) bytes.insert(bytes.end(), part.begin(), part.end());
+    (error_of(bytes).empty() ? atlases : errors) += 1;
+  }
+  EXPECT_GT(errors, 50);
+  EXPECT_GT(atlases, 50);
+}
+
+TEST(AtlasFile, AMissingSectionIsNamed) {
+  ArchiveWriter archive(atlas_kind);
+  archive.add("origin", std::string("1"), std::string("2"));
+  Bytes all;
+  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
+  EXPECT_THAT(error_of(all), testing::HasSubstr("section 'camera' is missing"));
+}
+
+TEST(AtlasFit, ConfigurationsAreLinesThatCanBeReadBack) {
+  Config config;
+  config.set("system.seed", std::int64_t{7});
+  config.set("orb.scale_factor", 1.3);
+  config.set("system.schedule_out", std::string("a \"b\" c"));
+  const std::string text = configuration_text(config);
+  EXPECT_EQ(configured(text, "system.seed"), "7");
+  EXPECT_EQ(configured(text, "orb.scale_factor"), "1.3");
+  EXPECT_EQ(configured(text, "system.mode"), "full");
+  EXPECT_EQ(configured(text, "system.realtime"), "false");
+  EXPECT_EQ(configured(text, "mode"), "");
+  EXPECT_THAT(text, testing::HasSubstr("system.schedule_out: \"a \\\"b\\\" c\"\n"));
+}
+
+class AtlasFitTest : public testing::Test {
+ protected:
+  std::string error() const {
+    try {
+      require_fit("FILE", atlas, config, camera);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  SavedAtlas atlas = some_atlas();
+  Config config;
+  Camera camera = atlas.camera;
+};
+
+TEST_F(AtlasFitTest, TheSameCameraFitsAndOneRecalibratedToo) {
+  EXPECT_EQ(error(), "");
+  camera.fx += 2;
+  camera.distortion = {};
+  EXPECT_EQ(error(), "");
+}
+
+TEST_F(AtlasFitTest, AnotherImageSizeOrLensIsNamed) {
+  camera.width = 320;
+  camera.height = 240;
+  EXPECT_EQ(
+      error(),
+      "FILE: was mapped with images of 640x480 pixels, and this camera's have 320x240; use the camera it was "
+      "mapped with, or map anew");
+  camera = atlas.camera;
+  camera.fx = 600;
+  EXPECT_THAT(error(), testing::HasSubstr("fx 525, fy 525, cx 320, cy 240 px, and this one has fx 600"));
+}
+
+TEST_F(AtlasFitTest, FeaturesOfOtherScalesDoNotFit) {
+  config.set("orb.levels", std::int64_t{4});
+  EXPECT_EQ(error(), "FILE: was mapped with orb.levels = 8, and this run has 4; set it to the same");
+}
+
+TEST_F(AtlasFitTest, AModeThatKnowsLessMayOnlyLocalise) {
+  config.set("system.mode", std::string("slam"));
+  EXPECT_THAT(error(), testing::HasSubstr("was mapped with --mode full, and --mode slam would leave"));
+  config.system.localise_only = true;
+  EXPECT_EQ(error(), "");
+  config = Config{};
+  Config less;
+  less.set("system.mode", std::string("bc"));
+  atlas.configuration = configuration_text(less);
+  EXPECT_EQ(error(), "");  // rooms are sought from now on
+}
+
+}  // namespace
+}  // namespace vsgraphs

@@ -1,0 +1,165 @@
+// The part of the map owner that deals with there being several maps.
+#include <algorithm>
+
+#include "core/base/check.h"
+#include "core/system/map_owner.h"
+
+namespace vsgraphs {
+
+namespace {
+
+std::shared_ptr<const PlaceIndex> index_of(const MapState& state, const PlaceIndexOptions& options) {
+  PlaceIndex places = state.places ? *state.places : PlaceIndex(options);
+  const bool complete = !follow(*state.map, places) && state.places;
+  return complete ? state.places : std::make_shared<const PlaceIndex>(std::move(places));
+}
+
+}  // namespace
+
+void MapOwner::start_from(const AtlasState& known) {
+  FirstIds unused;
+  for (const MapState& state : known.maps) {
+    unused = FirstIds::later(unused, state.map->unused_ids());
+    if (state.map->keyframes().size() == 0) continue;
+    dormant_.push_back({{state.map, index_of(state, place_options_), state.free_space}, 0, true});
+  }
+  if (!dormant_.empty()) {
+    const MapState last = dormant_.back().state;
+    dormant_.pop_back();
+    map_ = *last.map;
+    map_.apply(OpenMap{unused, 0});
+    places_ = *last.places;
+    published_places_ = last.places;
+    structure_.switch_to(last.free_space.get());
+    loaded_ = true;
+    snapshot_ = map_.snapshot();
+  }
+  publish_dormant();
+}
+
+void MapOwner::publish_dormant() {
+  auto states = std::make_shared<std::vector<MapState>>();
+  for (const DormantMap& dormant : dormant_) states->push_back(dormant.state);
+  published_dormant_ = std::move(states);
+}
+
+std::shared_ptr<const FreeSpace> MapOwner::free_space() const {
+  return options_.builds_structure() ? std::make_shared<const FreeSpace>(structure_.free_space()) : nullptr;
+}
+
+bool MapOwner::choose_map(const KeyframeRequest& request) {
+  if (request.first) {
+    if (map_.keyframes().size() == 0) return false;
+    open_new_map(request.frame_index);
+    return true;
+  }
+  if (map_.reanchor(request.pose)) return false;
+  for (std::size_t i = 0; i < dormant_.size(); ++i) {
+    if (!dormant_[i].state.map->reanchor(request.pose)) continue;
+    wake(i, EditEvent::Kind::resume, request.frame_index);
+    return true;
+  }
+  return false;
+}
+
+bool MapOwner::settle() {
+  const auto most =
+      std::max_element(dormant_.begin(), dormant_.end(),
+                       [](const DormantMap& a, const DormantMap& b) { return a.made < b.made; });
+  if (most == dormant_.end() || most->made <= made_) return false;
+  wake(static_cast<std::size_t>(most - dormant_.begin()), EditEvent::Kind::settle, newest_frame_);
+  return true;
+}
+
+// Keeps the order of age: by the first keyframe ever made.
+void MapOwner::put_to_sleep() {
+  const auto first_index = [](const Map& map) {
+    std::uint32_t index = 0;
+    while (index < map.keyframes().index_bound() && !map.keyframes().at_index(index).valid()) ++index;
+    return index;
+  };
+  const std::uint32_t age = first_index(*snapshot_);
+  const auto behind = std::find_if(dormant_.begin(), dormant_.end(),
+                                   [&](const DormantMap& d) { return first_index(*d.state.map) > age; });
+  dormant_.insert(behind, {{snapshot_, published_places_, free_space()}, made_, loaded_});
+}
+
+void MapOwner::drop_small_maps() {
+  const auto dropped = std::erase_if(dormant_, [this](const DormantMap& d) {
+    return !d.loaded && static_cast<int>(d.state.map->keyframes().size()) < options_.min_map_keyframes;
+  });
+  counts_.dropped_maps += static_cast<int>(dropped);
+}
+
+void MapOwner::open_new_map(std::int64_t frame) {
+  const OpenMap opening{map_.unused_ids(), map_.version()};
+  put_to_sleep();
+  drop_small_maps();
+  map_ = Map{};
+  places_ = PlaceIndex(place_options_);
+  published_places_.reset();
+  structure_.switch_to(nullptr);
+  made_ = 0;
+  loaded_ = false;
+  publish_dormant();
+  apply({opening.version, {opening}}, {EditEvent::Kind::new_map, frame, 0, 0});
+}
+
+void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) {
+  const DormantMap woken = dormant_[index];
+  dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(index));
+  const OpenMap opening{map_.unused_ids(), map_.version()};
+  put_to_sleep();
+  map_ = *woken.state.map;
+  places_ = *woken.state.places;
+  published_places_ = woken.state.places;
+  structure_.switch_to(woken.state.free_space.get());
+  made_ = woken.made;
+  loaded_ = woken.loaded;
+  publish_dormant();
+  apply({opening.version, {opening}}, {why, frame, 0, 0});
+}
+
+void MapOwner::look_for_join() {
+  join_.reset();
+  if (!options_.loop_closing || !map_.keyframes().contains(newest_)) return;
+  for (std::size_t i = 0; i < dormant_.size() && !join_; ++i) {
+    const MapState& other = dormant_[i].state;
+    LoopReport report;
+    auto join = loop_closer_.join(newest_, snapshot_, {other.map, other.places}, report, &spans_);
+    if (join) join_ = FoundJoin{i, std::move(*join)};
+  }
+}
+
+void MapOwner::join_maps() {
+  VSG_INVARIANT(join_.has_value());
+  const FoundJoin found = std::move(*join_);
+  join_.reset();
+  const DormantMap other = dormant_[found.dormant];
+  dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(found.dormant));
+  const bool onto_other = found.join.onto_other;
+  const Map& younger = onto_other ? *snapshot_ : *other.state.map;
+  if (options_.builds_scene()) {
+    scene_.recall(*snapshot_);
+    scene_.recall(*other.state.map);
+    scene_.move(younger, found.join.older_from_younger);
+    for (const EditOperation& operation : found.join.edit.operations) {
+      if (const auto* merge = std::get_if<MergePlane>(&operation)) scene_.note_merge(merge->id, merge->into);
+    }
+  }
+  const std::shared_ptr<const FreeSpace> younger_space = onto_other ? free_space() : other.state.free_space;
+  if (onto_other) {
+    map_ = *other.state.map;
+    structure_.switch_to(other.state.free_space.get());
+  }
+  // The smaller index is read again into the larger one.
+  if (other.state.places->size() > places_.size()) places_ = *other.state.places;
+  made_ += other.made;
+  loaded_ |= other.loaded;
+  ++counts_.merges;
+  publish_dormant();
+  apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0});
+  if (options_.builds_structure() && younger_space) structure_.absorb(map_, *younger_space);
+}
+
+}  // namespace vsgraphs

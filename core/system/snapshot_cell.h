@@ -1,0 +1,43 @@
+// The newest maps, for any thread to take.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "core/system/atlas_state.h"
+
+namespace vsgraphs {
+
+struct AtlasCounts {
+  int loops = 0;         // closed
+  int merges = 0;        // maps joined
+  int dropped_maps = 0;  // too small to be kept when a new one began
+};
+
+class SnapshotCell {
+ public:
+  struct Content {
+    Snapshot snapshot;                         // of the map being worked on
+    std::int64_t inserted = 0;                 // keyframe requests that are in the maps
+    std::shared_ptr<const PlaceIndex> places;  // of the snapshot's keyframes
+    // The other maps, oldest first; never null once something was published.
+    std::shared_ptr<const std::vector<MapState>> dormant;
+    AtlasCounts counts;
+  };
+  void publish(Content content);
+  Content take() const;
+  // Waits until at least `count` requests are in, or the cell is closed.
+  void wait_for_inserted(std::int64_t count) const;
+  // Ends all waiting, now and later.
+  void close();
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  Content content_;
+  bool closed_ = false;
+};
+
+}  // namespace vsgraphs

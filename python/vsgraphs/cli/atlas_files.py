@@ -1,0 +1,112 @@
+"""Atlases of `vsgraphs run`: what a run starts from, and what it leaves for the next one."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vsgraphs.errors import InputError
+
+if TYPE_CHECKING:
+    from vsgraphs.cli.run import RunRequest
+
+DEFAULT_NAME = "atlas.vsg"
+# The thread that saves gives way to tracking and mapping.
+_NICENESS = 10
+
+
+@dataclass
+class AtlasFiles:
+    """Which file is loaded, which is saved, and how often."""
+
+    load: Path | None = None
+    save_to: Path | None = None
+    every_s: float | None = None
+    warnings: list[str] = field(default_factory=list)
+    _make: Callable[[Any], Any] = field(init=False, repr=False)  # a Slam -> its Atlas
+    _saved: tuple[int, int] | None = None  # keyframes and version of the map when it was saved last
+
+    @staticmethod
+    def of(request: RunRequest) -> AtlasFiles:
+        """Of a request; checks what can be known before anything runs. Raises InputError."""
+        save_to = request.save_atlas
+        if save_to is None and request.autosave_s is not None:
+            save_to = request.out / DEFAULT_NAME
+        if request.shortcuts.get("system.localise_only") and request.load_atlas is None:
+            raise InputError("--localise-only needs maps to locate the camera in: give --load-atlas FILE")
+        if save_to is not None:
+            from vsgraphs.compiled import core
+
+            core().require_writable(save_to)
+        return AtlasFiles(request.load_atlas, save_to, request.autosave_s)
+
+    def start(self, core: Any, config: Any, camera: Any) -> Any:
+        """A Slam, started from the loaded maps if there are any. Raises InputError where they do not fit."""
+        self._make = lambda slam: core.Atlas(slam.atlas_state(), config, camera)
+        if self.load is None:
+            return core.Slam(config, camera)
+        atlas = core.load_atlas(self.load)
+        if atlas.empty and config.get("system.localise_only"):
+            raise InputError(f"{self.load}: holds an empty map: there is nothing to locate the camera in")
+        if atlas.empty:
+            print(f"{self.load}: holds an empty map, starting anew", flush=True)
+            return core.Slam(config, camera)
+        atlas.require_fit(config, camera, str(self.load))
+        print(f"{self.load}: {_told(atlas)}", flush=True)
+        return core.Slam(config, camera, atlas.state)
+
+    @contextlib.contextmanager
+    def saved_meanwhile(self, slam: Any, tell: Callable[[str], None]) -> Iterator[None]:
+        """Saves every few seconds in a thread of its own, if asked to, as long as the context lasts."""
+        if self.every_s is None:
+            yield
+            return
+        stop = threading.Event()
+        thread = threading.Thread(target=self._save_repeatedly, args=(slam, tell, stop), name="autosave")
+        thread.start()
+        try:
+            yield
+        finally:
+            stop.set()
+            thread.join()
+
+    def save(self, slam: Any) -> None:
+        """Saves at the end, if asked to, and says so. Raises InputError where the file cannot be written."""
+        if self.save_to is None:
+            return
+        atlas = self._make(slam)
+        atlas.save(self.save_to)
+        size_mb = self.save_to.stat().st_size / 1e6
+        what = "an empty map" if atlas.empty else _told(atlas)
+        print(f"saved in {self.save_to}: {what}, {size_mb:.1f} MB", flush=True)
+
+    def _save_repeatedly(self, slam: Any, tell: Callable[[str], None], stop: threading.Event) -> None:
+        with contextlib.suppress(OSError, AttributeError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
+        while not stop.wait(self.every_s):
+            try:
+                self._save_if_changed(slam)
+            except Exception as error:  # a full disk must not end the run: it may have room again next time
+                line = f"autosave: {error}"
+                if line not in self.warnings:
+                    self.warnings.append(line)
+                    tell(f"warning: {line}")
+
+    def _save_if_changed(self, slam: Any) -> None:
+        atlas = self._make(slam)
+        now = (atlas.state.keyframes, atlas.snapshot().version if len(atlas) else 0)
+        if atlas.empty or now == self._saved:
+            return
+        atlas.save(self.save_to)
+        self._saved = now
+
+
+def _told(atlas: Any) -> str:
+    info = atlas.info()
+    maps = "1 map" if info["maps"] == 1 else f"{info['maps']} maps"
+    return f"{maps}, {info['keyframes']} keyframes, {info['landmarks']} landmarks, {info['rooms']} rooms"
