@@ -80,7 +80,7 @@ class ThreadedExecutor : public Executor {
         if (work->markers) owner_.mark(work->frame, *work->markers);
         if (!work->request) continue;
         owner_.work_on(
-            *work->request, [this] { return requests_.size() >= 2; },
+            *work->request, [this] { return cut_short(); },
             [this] { return requests_.size() >= adjustment_backlog; });
       }
       owner_.end_run();
@@ -91,6 +91,10 @@ class ThreadedExecutor : public Executor {
     }
     cell_.close();
   }
+
+  // At the camera's pace, a window's adjustment gives way to the keyframes that wait. Otherwise tracking waits for it, so
+  // that accuracy does not hang on how fast the machine is.
+  bool cut_short() const { return options_.realtime && requests_.size() >= 2; }
 
   void wait_for_mapper() {
     const std::int64_t needed = tracking_.requested() - options_.max_waiting_keyframes;
