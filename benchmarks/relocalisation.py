@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Is a camera found again that was covered and carried off? Blacks a sequence out and goes on at ten other places.
+"""Is a camera found again that was covered and carried off? Blacks out a sequence, then goes on elsewhere.
 
     benchmarks/relocalisation.py DATA/kitchen
 
-Every other frame is mapped. Then, ten times: three seconds of darkness, and a second of the frames between at another
-place. Found: a pose within that second; its error is the distance to the truth, after the mapped trajectory was
-aligned with it (or, without truth, to the mapped trajectory itself). Serial execution; times are of the CPU.
+Every other frame is mapped. Then, ten times: three seconds of darkness, and a second of the frames between at
+another place. Found: a pose within that second; its error is the distance to the truth, after the mapped
+trajectory was aligned with it. Serial execution; CPU times of the calling thread.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from __future__ import annotations
 import argparse
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 import vsgraphs
-from vsgraphs.trajectory import Trajectory
+from vsgraphs.trajectory import read_tum_trajectory
 
 PLACES, DARK_S, SEEN_S, MAX_ERROR_M = 10, 3.0, 1.0, 0.05
 
@@ -30,63 +31,76 @@ def aligned(source: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndar
     return turn, target_middle - turn @ middle
 
 
+class Carried:
+    """A camera with its clock, and the truth."""
+
+    def __init__(self, sequence: Any, truth: Any) -> None:
+        config = vsgraphs.Config()
+        config.set("system.execution", "serial")
+        self.slam = vsgraphs.Slam(config, sequence.camera)
+        self.truth = truth
+        self.step_s = 2.0 / sequence.camera.fps
+        self.frames = 0
+        self.turn, self.shift = np.eye(3), np.zeros(3)
+
+    def see(self, rgb: np.ndarray, depth: np.ndarray) -> Any:
+        """The next frame."""
+        self.frames += 1
+        return self.slam.track(rgb, depth, (self.frames - 1) * self.step_s)
+
+    def true_place(self, timestamp: float) -> np.ndarray:
+        """Where the camera was, m."""
+        places = self.truth.positions
+        return np.array([np.interp(timestamp, self.truth.timestamps, places[:, i]) for i in range(3)])
+
+    def map(self, frames: list[Any]) -> None:
+        """Walks through the frames and aligns what came out with the truth."""
+        for frame in frames:
+            rgb, depth = frame.load()
+            self.see(rgb, depth)
+        self.dark = np.zeros_like(rgb), np.zeros_like(depth)
+        stamps, poses = self.slam.trajectory()
+        seen = [frames[round(stamp / self.step_s)].timestamp for stamp in stamps]
+        self.turn, self.shift = aligned(poses[:, :3, 3], np.array([self.true_place(s) for s in seen]))
+
+    def carry_to(self, frames: list[Any]) -> tuple[int | None, float, float]:
+        """After how many frames it is found, the error (m) and the slowest attempt (ms)."""
+        for _ in range(int(DARK_S / self.step_s)):
+            self.see(*self.dark)
+        found, error, slowest_ms = None, float("nan"), 0.0
+        for count, frame in enumerate(frames):
+            rgb, depth = frame.load()
+            began = time.thread_time()
+            result = self.see(rgb, depth)
+            if found is None:
+                slowest_ms = max(slowest_ms, 1e3 * (time.thread_time() - began))
+            if found is None and result.status == "relocalised":
+                found = count + 1
+                place = self.turn @ result.world_from_camera[:3, 3] + self.shift
+                error = float(np.linalg.norm(place - self.true_place(frame.timestamp)))
+        return found, error, slowest_ms
+
+
 def main() -> None:
     """Prints a Markdown table, one row a place."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("sequence", type=Path)
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=NUMBER")
-    options = parser.parse_args()
+    sequence_folder = parser.parse_args().sequence
 
-    sequence = vsgraphs.open_sequence(options.sequence)
-    truth = Trajectory.read(options.sequence / "groundtruth.txt")
-    config = vsgraphs.Config()
-    config.set("system.execution", "serial")
-    for item in options.set:
-        key, _, value = item.partition("=")
-        config.set(key, type(config.get(key))(value))
-    slam = vsgraphs.Slam(config, sequence.camera)
-    step_s = 2.0 / sequence.camera.fps
-    now, stamp_of = 0.0, {}
-    for frame in sequence.frames[::2]:
-        rgb, depth = frame.load()
-        slam.track(rgb, depth, now)
-        stamp_of[now] = frame.timestamp
-        now += step_s
-    dark_rgb, dark_depth = np.zeros_like(rgb), np.zeros_like(depth)
-
-    stamps, poses = slam.trajectory()
-    mapped = np.array([p[:3, 3] for p in poses])
-    true_stamps, true_places = truth.timestamps, truth.positions
-
-    def true_place(timestamp: float) -> np.ndarray:
-        return np.array([np.interp(timestamp, true_stamps, true_places[:, axis]) for axis in range(3)])
-
-    turn, shift = aligned(mapped, np.array([true_place(stamp_of[s]) for s in stamps]))
-    print("| place | found after, frames | error, mm | slowest attempt, ms |")
-    print("|---|---|---|---|")
-    good = 0
+    sequence = vsgraphs.open_sequence(sequence_folder)
+    camera = Carried(sequence, read_tum_trajectory(sequence_folder / "groundtruth.txt"))
+    camera.map(sequence.frames[::2])
     between = sequence.frames[1::2]
+    seen = max(1, int(SEEN_S / camera.step_s))
+    print("| from frame | found after, frames | error, mm | slowest frame, ms |\n|---|---|---|---|")
+    good = 0
     for number in range(PLACES):
         begin = (number * 7 % PLACES) * len(between) // PLACES
-        for _ in range(int(DARK_S / step_s)):
-            slam.track(dark_rgb, dark_depth, now)
-            now += step_s
-        found, error, slowest = None, float("nan"), 0.0
-        for count, frame in enumerate(between[begin : begin + max(1, int(SEEN_S / step_s))]):
-            rgb, depth = frame.load()
-            began = time.thread_time()
-            result = slam.track(rgb, depth, now)
-            if found is None:
-                slowest = max(slowest, 1e3 * (time.thread_time() - began))
-            now += step_s
-            if found is None and result.status == "relocalised":
-                found = count + 1
-                place = turn @ result.world_from_camera[:3, 3] + shift
-                error = float(np.linalg.norm(place - true_place(frame.timestamp)))
+        found, error, slowest_ms = camera.carry_to(between[begin : begin + seen])
         good += found is not None and error < MAX_ERROR_M
-        print(f"| {begin} | {found or '-'} | {1e3 * error:.0f} | {slowest:.0f} |", flush=True)
+        print(f"| {2 * begin + 1} | {found or '-'} | {1e3 * error:.0f} | {slowest_ms:.0f} |", flush=True)
     print(f"\nfound within {SEEN_S:g} s and {100 * MAX_ERROR_M:g} cm: {good} of {PLACES}")
 
 

@@ -27,7 +27,8 @@ def one_run(
 ) -> dict[str, Any]:
     """Times in ms of every frame of one run, and what the view says."""
     slam = vsgraphs.Slam(vsgraphs.Config(), sequence.camera)
-    tracker, view = slam, None
+    tracker: Any = slam
+    view = None
     if record is not None:
         sinks = open_sinks(SinkRequest(record=record), print)
         view = LiveView(slam, sequence.calibration, sinks, with_planes=True, tell=print)

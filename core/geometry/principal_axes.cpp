@@ -12,6 +12,10 @@ double smallest_eigenvalue(const Eigen::Matrix2d& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
+double smallest_eigenvalue6(const Matrix6d& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
 Matrix6d weak_directions(const Matrix6d& information, double max_sigma) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(information);
   Matrix6d projector = Matrix6d::Zero();

@@ -11,6 +11,7 @@ namespace vsgraphs {
 Eigen::Vector3d weakest_axis(const Eigen::Matrix3d& symmetric);
 
 double smallest_eigenvalue(const Eigen::Matrix2d& symmetric);
+double smallest_eigenvalue6(const Matrix6d& symmetric);
 
 // Projector onto the directions of motion that `information` (inverse covariance of a pose's tangent) knows worse than
 // `max_sigma`, m or rad.

@@ -170,8 +170,8 @@ using EditOperation =
     std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
                  RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings, SetPatches,
                  AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation, MovePlane,
-                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, OpenMap, AbsorbMap, AddMarker,
-                 RemoveMarker, AddMarkerObservation, RemoveMarkerObservations, MoveMarker>;
+                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, OpenMap, AbsorbMap,
+                 AddMarker, RemoveMarker, AddMarkerObservation, RemoveMarkerObservations, MoveMarker>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

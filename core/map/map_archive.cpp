@@ -98,8 +98,8 @@ void save_map(ArchiveWriter& archive, const std::string& prefix, const Map& map)
 Map load_map(const ArchiveReader& archive, const std::string& prefix) {
   Map map;
   visit_tables(map, [&](const char* name, auto& part) { archive.read(prefix + "/" + name, part); });
-  for (const auto check :
-       {wrong_with_keyframes, wrong_with_anchors, wrong_with_landmarks, wrong_with_planes, wrong_with_markers}) {
+  for (const auto check : {wrong_with_keyframes, wrong_with_anchors, wrong_with_landmarks, wrong_with_planes,
+                           wrong_with_markers}) {
     if (const char* wrong = check(map)) archive.damaged(wrong);
   }
   return map;

@@ -1,10 +1,10 @@
 #include "core/system/markers.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <string>
 
 #include "core/base/check.h"
+#include "core/geometry/principal_axes.h"
 
 namespace vsgraphs {
 namespace {
@@ -22,8 +22,7 @@ bool is_covariance(const Matrix6d& c) {
   constexpr double least = 1e-14;
   if (!c.allFinite() || (c - c.transpose()).cwiseAbs().maxCoeff() > 1e-9 * c.cwiseAbs().maxCoeff())
     return false;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(c, Eigen::EigenvaluesOnly);
-  return eigen.info() == Eigen::Success && eigen.eigenvalues()[0] >= least;
+  return smallest_eigenvalue6(c) >= least;
 }
 
 }  // namespace
