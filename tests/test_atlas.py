@@ -257,7 +257,7 @@ def test_places_that_cannot_be_written_are_told_before_the_run(
         assert not (tmp_path / "o" / "trajectory.txt").exists()
 
 
-def test_a_full_disk_leaves_the_old_file(
+def test_a_full_disk_leaves_a_whole_file(
     walked: Path, recorded: Path, tmp_path: Path, vsgraphs: Program
 ) -> None:
     """A limit on the size of files stands for the disk: it ends a write in the middle."""
@@ -276,7 +276,8 @@ def test_a_full_disk_leaves_the_old_file(
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
     )
     assert f"cannot write {target}: File too large" in one_line_error(done)
-    assert target.read_bytes() == (walked / "atlas.vsg").read_bytes()
+    # The old file, or a whole one saved while the map was still small.
+    assert vsgraphs("info", target).returncode == 0
     assert not list(tmp_path.glob(".*.part"))
     assert report(out)["tracked"] == 30  # the rest is there
     warnings = [line for line in report(out)["warnings"] if line.startswith("autosave: cannot write")]

@@ -171,7 +171,7 @@ def test_the_program_stops_waiting_at_its_limit_or_a_signal(
             gate.open.set()
         return what == "signal" and len(asked) > 2
 
-    drain(segmentation, 0.0 if what == "limit" else 60.0, stop)
+    drain(segmentation, None, 0.0 if what == "limit" else 60.0, stop)
     assert (capsys.readouterr().err != "") == (what != "limit")
     counts = segmentation.report()
     if what == "limit":

@@ -36,7 +36,8 @@ struct SeenMarker {
     const T factor = (T(1) - T(0.5) * angle * (T(1) + cos(angle)) / sin(angle)) / (angle * angle);
     const Vector3<T> turned = cross<T>(phi, shift);
     Eigen::Matrix<T, 6, 1> error;
-    error << shift - T(0.5) * turned + factor * cross<T>(phi, turned), phi;
+    error.template head<3>() = shift - T(0.5) * turned + factor * cross<T>(phi, turned);
+    error.template tail<3>() = phi;
     Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} = root.cast<T>() * error;
     return true;
   }
