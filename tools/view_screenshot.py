@@ -1,6 +1,6 @@
 """A picture of the web viewer: vsgraphs view RUN --web in one terminal, this in another.
 
-    tools/view_screenshot.py PAGE_ADDRESS OUT.png [--size 1600x1000] [--settle 25] [--colours 256]
+    tools/view_screenshot.py PAGE_ADDRESS OUT.png [--size 1280x800] [--settle 300] [--colours 256]
 
 Needs Chromium (Debian: chromium) but neither display nor GPU. Speaks the DevTools protocol over its pipe: a
 one-shot --screenshot is taken before the viewer has drawn anything. --colours: of the PNG's palette, 0: all.
@@ -21,6 +21,7 @@ from typing import Any
 
 from PIL import Image
 
+_BEFORE_S, _BETWEEN_S, _SAME = 15.0, 8.0, 2
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 _FLAGS = (
     "--headless=new",
@@ -89,7 +90,10 @@ class Browser:
     def close(self) -> None:
         """Ends the browser."""
         self.call("Browser.close")
-        self._process.wait(timeout=20)
+        try:
+            self._process.wait(timeout=20)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
 
 
 def _installed(name: str) -> bool:
@@ -113,10 +117,25 @@ def screenshot(address: str, size: tuple[int, int], settle_s: float) -> Image.Im
         dark = [{"name": "prefers-color-scheme", "value": "dark"}]
         browser.call("Emulation.setEmulatedMedia", session, features=dark)
         browser.call("Page.navigate", session, url=address)
-        time.sleep(settle_s)
-        data = browser.call("Page.captureScreenshot", session, format="png")["data"]
+        picture = _settled(browser, session, settle_s)
         browser.close()
-    return Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")
+    return picture
+
+
+def _settled(browser: Browser, session: str, longest_s: float) -> Image.Image:
+    """The page once three pictures in a row are the same, or as it is after longest_s."""
+    deadline = time.monotonic() + longest_s
+    same, last = 0, b""
+    time.sleep(_BEFORE_S)
+    while True:
+        data = browser.call("Page.captureScreenshot", session, format="png")["data"]
+        picture = Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")
+        small = picture.crop((0, picture.height // 12, *picture.size)).resize((80, 50)).tobytes()
+        same = same + 1 if small == last else 0
+        last = small
+        if same >= _SAME or time.monotonic() > deadline:
+            return picture
+        time.sleep(_BETWEEN_S)
 
 
 def main() -> None:
@@ -126,8 +145,8 @@ def main() -> None:
     )
     parser.add_argument("address")
     parser.add_argument("out", type=Path)
-    parser.add_argument("--size", default="1600x1000")
-    parser.add_argument("--settle", type=float, default=25.0, help="seconds until the picture")
+    parser.add_argument("--size", default="1280x800")
+    parser.add_argument("--settle", type=float, default=300.0, help="seconds it may take at most")
     parser.add_argument("--colours", type=int, default=256)
     options = parser.parse_args()
     width, height = (int(number) for number in options.size.split("x"))

@@ -25,7 +25,7 @@ from vsgraphs.view.surfaces import (
 PATH_COLOUR = (235, 70, 60)
 _PLANE_ALPHA = {"wall": 165, "ground": 190}
 _EDGE_ALPHA = {"observes_plane": 60, "bounds": 200, "belongs_to": 230, "door": 255}
-_AREA_ALPHA = 120
+_AREA_ALPHA = {"whole": 255, "partial": 60}  # of what was seen in part the ground shows through
 _LIFTED = np.array([0.0, 0.0, 0.06])  # above the room's area, which lies above the ground
 _NAMED = ("wall", "ground", "door", "window")
 
@@ -83,7 +83,9 @@ def _log_planes(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
 def _log_rooms(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
     rr = rerun()
     rooms = list(graph.rooms.values())
-    _log_mesh(sinks, "world/rooms/areas", room_mesh(rooms, up_from_graph), _AREA_ALPHA)
+    for part, alpha in _AREA_ALPHA.items():
+        shown = [room for room in rooms if room.partial == (part == "partial")]
+        _log_mesh(sinks, f"world/rooms/areas/{part}", room_mesh(shown, up_from_graph), alpha)
     outlines = [
         transform_points(up_from_graph, np.concatenate([room.polygon, room.polygon[:1]])) + _LIFTED
         for room in rooms

@@ -115,7 +115,7 @@ def open_sinks(request: SinkRequest, tell: Callable[[str], None]) -> Sinks:
         sinks.record = request.record
         sinks.streams.append(_recording(rr, request.record))
     if request.view:
-        stream = rr.RecordingStream(APPLICATION)
+        stream = rr.RecordingStream(APPLICATION, send_properties=False)
         if request.web or not has_display():
             sinks.page = _serve(rr, stream, request)
             tell(f"open {sinks.page} in a browser{'' if request.web else ' (there is no display here)'}")
@@ -139,7 +139,7 @@ def _recording(rr: Any, path: Path) -> Any:
         raise InputError(
             f"--record {path}: {path.resolve().parent} is not a directory that can be written to"
         )
-    stream = rr.RecordingStream(APPLICATION)
+    stream = rr.RecordingStream(APPLICATION, send_properties=False)
     try:
         stream.save(path)
     except Exception as error:
