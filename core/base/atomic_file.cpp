@@ -59,7 +59,8 @@ int open_part(const std::filesystem::path& path) {
     cannot_write(path, "it is no ordinary file; give another name");
   const int file = ::open(part_of(path).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (file < 0) cannot_write(path, reason(errno));
-  if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+  // Where a file system knows no locks there is none to wait for.
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(file);
     cannot_write(path, "another program is writing it; give another name");
   }
