@@ -177,9 +177,16 @@ TEST(Slam, MarkersOfOtherFramesAndAfterTheEndHaveNoEffect) {
   const MarkerDetection seen{
       {7}, 0.16, Se3(Eigen::Matrix3d::Identity(), {0, 0, 2}), 1e-4 * Matrix6d::Identity()};
   run.slam().add_markers(0, {seen});
-  for (int i = 0; i < 3; ++i) run.track(i);
-  run.slam().add_markers(1, {seen});
+  int ordinary = -1;  // a frame that is no keyframe
+  for (int i = 0; i < 6; ++i) {
+    if (!run.track(i).keyframe_request) ordinary = i;
+  }
+  ASSERT_GE(ordinary, 0);
+  EXPECT_TRUE(run.slam().snapshot()->markers().empty()) << "before there was a frame";
+  run.slam().add_markers(ordinary, {seen});
+  EXPECT_TRUE(run.slam().snapshot()->markers().empty()) << "no keyframe";
   run.slam().add_markers(99, {seen});
+  EXPECT_TRUE(run.slam().snapshot()->markers().empty()) << "no frame";
   run.slam().finish();
   run.slam().add_markers(0, {seen});
   EXPECT_TRUE(run.slam().snapshot()->markers().empty());
