@@ -9,7 +9,7 @@
 //
 // Numbers are little-endian. Values are written by their fields (fields.h). The checksum is FNV-1a's step (Fowler, Noll,
 // Vo, 1991) on words of eight bytes, with the high half folded down after each: every step is a bijection, so a single word
-// that differs is always noticed, at 5 GB/s.
+// that differs is always noticed.
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,7 @@
 namespace vsgraphs {
 
 // Sections PREFIX/keyframes, ... What keyframes share goes to the archive's pools. The map must outlive the writer's work.
-// Linear; 200 MB/s.
+// Linear in its size.
 void save_map(ArchiveWriter& archive, const std::string& prefix, const Map& map);
 
 // After the archive's shared constants are loaded (load_shared_constants). Throws InputError if a section is missing or

@@ -26,11 +26,11 @@ struct SavedAtlas {
 };
 
 // Writes the file as a whole or not at all. Throws InputError naming it and the cause; an old file then stays. Any thread:
-// the state is values. Cost: 200 kB and 1 ms per keyframe, and one copy of it all in memory.
+// the state is values. Cost: linear in the keyframes, and one copy of it all in memory.
 void save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas);
 
 // What save_atlas() was given, exactly. Throws InputError, one line that names the file, where it cannot be read, is no
-// atlas, is damaged, or was saved by a newer version. 1 ms per keyframe.
+// atlas, is damaged, or was saved by a newer version.
 SavedAtlas load_atlas(const std::filesystem::path& path);
 // The same from memory; `name` is for messages.
 SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes);
