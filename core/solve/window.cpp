@@ -82,7 +82,7 @@ ReprojectionObservation measure(const MeasurementModel& model, const Feature& fe
 
 void build_landmark_factors(const Map& map, const Window& window, const MeasurementModel& model,
                             WindowProblem& problem) {
-  const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
+  const std::vector<int> pose_of = pose_positions(map, problem);
   std::vector<ReprojectionObservation> rows;
   for (const LandmarkId id : window.landmarks) {
     const Landmark& landmark = *map.landmarks().find(id);
@@ -111,7 +111,7 @@ Matrix6d square_root(const Matrix6d& information) {
 void build_tracked_links(const Map& map, const Window&, const MeasurementModel& model,
                          WindowProblem& problem) {
   if (!model.factors.tracked_link) return;
-  const std::vector<int> pose_of = positions(problem.keyframe_of_pose, map.keyframes().index_bound());
+  const std::vector<int> pose_of = pose_positions(map, problem);
   for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i) {
     const auto& link = map.keyframes().find(problem.keyframe_of_pose[i])->tracked_link;
     if (!link) continue;
@@ -134,6 +134,10 @@ constexpr std::array<FactorBuilder, 6> factor_builders = {
     build_wall_to_ground_factors, build_room_factors,  build_marker_factors};
 
 }  // namespace
+
+std::vector<int> pose_positions(const Map& map, const WindowProblem& problem) {
+  return positions(problem.keyframe_of_pose, map.keyframes().index_bound());
+}
 
 Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fixed) {
   Window window;

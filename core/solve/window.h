@@ -42,6 +42,9 @@ struct WindowProblem {
   std::vector<MarkerId> marker_of_variable;
 };
 
+// Per keyframe index, the keyframe's pose in the problem; -1 where it has none.
+std::vector<int> pose_positions(const Map& map, const WindowProblem& problem);
+
 // Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground, rooms and floors,
 // markers.
 WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);

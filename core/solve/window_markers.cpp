@@ -26,10 +26,7 @@ struct SeenMarker {
 class MarkerGathering {
  public:
   MarkerGathering(const Map& map, const WindowProblem& problem)
-      : map_(map), problem_(problem), pose_of_(map.keyframes().index_bound(), -1) {
-    for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i)
-      pose_of_[problem.keyframe_of_pose[i].index] = static_cast<int>(i);
-  }
+      : map_(map), problem_(problem), pose_of_(pose_positions(map, problem)) {}
 
   bool is_free(int pose) const {
     return pose >= 0 && !problem_.bundle.pose_fixed[static_cast<std::size_t>(pose)];

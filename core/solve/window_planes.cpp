@@ -18,13 +18,6 @@ constexpr FrameTolerance frame_error{0.01, 0.004};
 // What the pose of a keyframe outside the window may be off by.
 constexpr FrameTolerance outer_pose_error{0.03, 0.01};
 
-std::vector<int> pose_positions(const Map& map, const WindowProblem& problem) {
-  std::vector<int> position(map.keyframes().index_bound(), -1);
-  for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i)
-    position[problem.keyframe_of_pose[i].index] = static_cast<int>(i);
-  return position;
-}
-
 // The keyframe that alone has seen the plane; invalid if there are several or none.
 KeyframeId carrier_of(const MappedPlane& plane) {
   if (plane.observations.empty()) return {};
