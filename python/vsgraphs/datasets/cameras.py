@@ -9,6 +9,7 @@ NICE-SLAM. Redwood: the PrimeSense camera its page names (also Open3D's PrimeSen
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -94,14 +95,15 @@ def camera_from_folder_name(folder: Path) -> Calibration | None:
 def choose_camera(
     folder: Path,
     given: str | Path | Calibration | None,
-    default: Calibration | None,
+    default: Calibration | Callable[[], Calibration] | None,
     *,
     y_up: bool = False,
 ) -> tuple[Calibration, list[str]]:
     """The camera of a sequence, and remarks worth telling.
 
     What the user gave (file or name), else camera.yaml in the folder, else `default`, else what the folder's
-    name points to. Raises InputError when none of these is there. y_up: see `read_camera_file`.
+    name points to. A `default` that is a function is called only where it is needed, and raises what is wrong
+    then. Raises InputError when none of these is there. y_up: see `read_camera_file`.
     """
     if isinstance(given, Calibration):
         return given, []
@@ -110,7 +112,7 @@ def choose_camera(
     for name in ("camera.yaml", "camera.yml"):
         if (folder / name).is_file():
             return read_camera_file(folder / name, y_up=y_up)
-    known = default or camera_from_folder_name(folder)
+    known = (default() if callable(default) else default) or camera_from_folder_name(folder)
     if known is None:
         raise InputError(
             f"no camera for {folder}: no camera.yaml there and its name is not a known dataset's; "

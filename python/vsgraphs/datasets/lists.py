@@ -97,7 +97,12 @@ def stamp_of(word: str, path: Path) -> float:
         raise InputError(f"{path}: timestamp {word!r} is not a number") from None
 
 
-def read_timed_files(path: Path) -> tuple[list[float], list[str]]:
-    """rgb.txt or depth.txt: `timestamp file` per line."""
+def read_timed_files(path: Path) -> Timed[str]:
+    """rgb.txt or depth.txt (`timestamp file` per line), in order. Raises InputError if nothing is usable."""
     rows = read_list(path, 2)
-    return [stamp_of(row[0], path) for row in rows], [row[1] for row in rows]
+    if not rows:
+        raise InputError(f"{path} lists no images; expected lines 'timestamp file'")
+    timed = in_order([stamp_of(row[0], path) for row in rows], [row[1] for row in rows], path.name)
+    if not timed.stamps:
+        raise InputError(f"{path}: none of the {len(rows)} timestamps is a number")
+    return timed

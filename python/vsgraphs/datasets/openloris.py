@@ -18,7 +18,7 @@ import numpy as np
 
 from vsgraphs.datasets.calibration import Calibration, check_calibration
 from vsgraphs.datasets.cameras import choose_camera
-from vsgraphs.datasets.lists import in_order, read_timed_files
+from vsgraphs.datasets.lists import read_timed_files
 from vsgraphs.datasets.opencv_yaml import read_opencv_yaml
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
@@ -49,8 +49,7 @@ def open_folder(folder: Path, camera: str | Path | Calibration | None = None) ->
             f"{folder / 'aligned_depth.txt'} is missing: only depth registered to colour can be used "
             "(depth.txt is not)"
         )
-    needs_own = camera is None and not any((folder / f"camera.{end}").is_file() for end in ("yaml", "yml"))
-    calibration, remarks = choose_camera(folder, camera, read_camera(folder) if needs_own else None)
+    calibration, remarks = choose_camera(folder, camera, lambda: read_camera(folder))
     frames, skipped, warnings = _frames(folder, (calibration.width, calibration.height))
     truth = folder / TRUTH
     return RecordedSequence(
@@ -126,16 +125,11 @@ def base_from_camera(path: Path) -> Array:
 
 
 def _frames(folder: Path, size: tuple[int, int]) -> tuple[list[FrameRef], dict[str, int], list[str]]:
-    lists = {}
-    for name in ("color.txt", "aligned_depth.txt"):
-        stamps, files = read_timed_files(folder / name)
-        if not stamps:
-            raise InputError(f"{folder / name} lists no images; expected lines 'timestamp file'")
-        lists[name] = in_order(stamps, files, name)
-    colour, depth = lists["color.txt"], lists["aligned_depth.txt"]
+    colour = read_timed_files(folder / "color.txt")
+    depth = read_timed_files(folder / "aligned_depth.txt")
     pairs = pair_by_time(colour.stamps, depth.stamps, MAX_GAP_S)
     if not pairs:
-        gap = smallest_gap(colour.stamps, depth.stamps) if colour.stamps and depth.stamps else float("nan")
+        gap = smallest_gap(colour.stamps, depth.stamps)
         raise InputError(
             f"{folder}: no images of color.txt and aligned_depth.txt are within {MAX_GAP_S:g} s of each "
             f"other; the smallest gap is {gap:g} s"

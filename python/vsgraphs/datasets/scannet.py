@@ -36,10 +36,7 @@ def open_folder(folder: Path, camera: str | Path | Calibration | None = None) ->
     """Opens the sequence; raises InputError when nothing in it can be used."""
     numbered, warnings = pair_by_number(folder / "color", folder / "depth")
     sizes = (_size([colour for _, colour, _ in numbered]), _size([depth for *_, depth in numbered]))
-    needs_own = camera is None and not any((folder / f"camera.{end}").is_file() for end in ("yaml", "yml"))
-    calibration, remarks = choose_camera(
-        folder, camera, _depth_camera(folder, sizes[1]) if needs_own else None
-    )
+    calibration, remarks = choose_camera(folder, camera, lambda: _depth_camera(folder, sizes[1]))
     grid = None
     if sizes[0] != (calibration.width, calibration.height):
         grid = _colour_grid(folder, sizes[0], calibration, needed=not isinstance(camera, Calibration))

@@ -92,15 +92,7 @@ def read_associations(path: Path) -> Timed[tuple[str, str]]:
 
 
 def _pair_lists(folder: Path) -> Timed[tuple[str, str]]:
-    lists = {}
-    for name in ("rgb.txt", "depth.txt"):
-        stamps, files = read_timed_files(folder / name)
-        if not stamps:
-            raise InputError(f"{folder / name} lists no images; expected lines 'timestamp file'")
-        lists[name] = in_order(stamps, files, name)
-        if not lists[name].stamps:
-            raise InputError(f"{folder / name}: none of the {len(stamps)} timestamps is a number")
-    rgb, depth = lists["rgb.txt"], lists["depth.txt"]
+    rgb, depth = read_timed_files(folder / "rgb.txt"), read_timed_files(folder / "depth.txt")
     pairs = pair_by_time(rgb.stamps, depth.stamps, MAX_GAP_S)
     if not pairs:
         gap = smallest_gap(rgb.stamps, depth.stamps)
