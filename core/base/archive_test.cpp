@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/rng.h"
+#include "core/base/test_archive.h"
 
 namespace vsgraphs {
 
@@ -60,17 +61,11 @@ Tree some_tree() {
   return tree;
 }
 
-Bytes joined(const std::vector<std::span<const std::byte>>& parts) {
-  Bytes all;
-  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 Bytes bytes_of(const Tree& tree, const ArchiveKind& as = kind) {
   ArchiveWriter archive(as);
   archive.add("tree", tree);
   archive.add("number", 42);
-  return joined(archive.finish());
+  return test::joined(archive.finish());
 }
 
 Tree tree_of(std::span<const std::byte> bytes) {
@@ -154,7 +149,7 @@ TEST(Archive, SectionsThatLieAreErrorsOrValues) {
         bytes.resize(rng.index(static_cast<std::uint32_t>(bytes.size())));
       forged.add_bytes(name, std::move(bytes));
     }
-    const Bytes bytes = joined(forged.finish());
+    const Bytes bytes = test::joined(forged.finish());
     errors += error_of(bytes).empty() ? 0 : 1;
   }
   EXPECT_GT(errors, 500);
@@ -163,7 +158,7 @@ TEST(Archive, SectionsThatLieAreErrorsOrValues) {
 TEST(Archive, AHugeLengthIsNoticedBeforeAnythingIsAllocated) {
   ArchiveWriter archive(kind);
   archive.add("numbers", std::uint64_t{1} << 60);
-  const Bytes bytes = joined(archive.finish());
+  const Bytes bytes = test::joined(archive.finish());
   const ArchiveReader reader("FILE", bytes, kind);
   std::vector<std::uint64_t> numbers;
   std::string text;
@@ -193,7 +188,7 @@ TEST(Archive, SaysWhenAFileIsSomethingElse) {
 TEST(Archive, SaysWhichSectionIsMissing) {
   ArchiveWriter archive(kind);
   archive.add("number", 42);
-  const Bytes bytes = joined(archive.finish());
+  const Bytes bytes = test::joined(archive.finish());
   EXPECT_THAT(error_of(bytes), testing::HasSubstr("section 'tree' is missing"));
 }
 

@@ -1,7 +1,7 @@
 // Free space in an archive.
 #include <gtest/gtest.h>
 
-#include "core/base/archive.h"
+#include "core/base/test_archive.h"
 #include "core/scene/free_space.h"
 
 namespace vsgraphs {
@@ -37,9 +37,7 @@ FreeSpace some_space() {
 Bytes bytes_of(const FreeSpace& space) {
   ArchiveWriter archive(kind);
   archive.add("space", space);
-  Bytes all;
-  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return test::joined(archive.finish());
 }
 
 FreeSpace space_of(const Bytes& bytes) {

@@ -5,6 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/base/rng.h"
+#include "core/base/test_archive.h"
 #include "core/map/test_map.h"
 
 namespace vsgraphs {
@@ -52,9 +53,7 @@ SavedAtlas some_atlas() {
 Bytes bytes_of(const SavedAtlas& atlas) {
   ArchiveWriter archive(atlas_kind);
   write_atlas(archive, atlas);
-  Bytes all;
-  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return test::joined(archive.finish());
 }
 
 std::string error_of(std::span<const std::byte> bytes) {
@@ -130,8 +129,7 @@ TEST(AtlasFile, ForgedSectionsAreErrorsOrAtlases) {
       }
       forged.add_bytes(name, std::move(bytes));
     }
-    Bytes bytes;
-    for (const auto& part : forged.finish()) bytes.insert(bytes.end(), part.begin(), part.end());
+    const Bytes bytes = test::joined(forged.finish());
     (error_of(bytes).empty() ? atlases : errors) += 1;
   }
   EXPECT_GT(errors, 50);
@@ -141,9 +139,7 @@ TEST(AtlasFile, ForgedSectionsAreErrorsOrAtlases) {
 TEST(AtlasFile, AMissingSectionIsNamed) {
   ArchiveWriter archive(atlas_kind);
   archive.add("origin", std::string("1"), std::string("2"));
-  Bytes all;
-  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
-  EXPECT_THAT(error_of(all), testing::HasSubstr("section 'camera' is missing"));
+  EXPECT_THAT(error_of(test::joined(archive.finish())), testing::HasSubstr("section 'camera' is missing"));
 }
 
 TEST(AtlasFit, ConfigurationsAreLinesThatCanBeReadBack) {

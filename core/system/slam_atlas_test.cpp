@@ -10,36 +10,18 @@
 #include "core/base/check.h"
 #include "core/base/rng.h"
 #include "core/system/slam.h"
+#include "core/vision/test_painted_wall.h"
 
 namespace vsgraphs {
 namespace {
 
-constexpr int width = 320, height = 240, wall_px = 1000;
-constexpr double wall_m = 2.0, focal_px = 262.5, metres_per_px = wall_m / focal_px, frame_s = 0.1;
+constexpr int width = test::painted_view_width, height = test::painted_view_height, wall_px = 1000;
+constexpr double wall_m = 2.0, focal_px = test::painted_view_focal_px, metres_per_px = wall_m / focal_px,
+                 frame_s = 0.1;
 
-Camera small_camera() {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = focal_px;
-  camera.cx = 159.5;
-  camera.cy = 119.5;
-  camera.fps = 1 / frame_s;
-  return camera;
-}
+Camera small_camera() { return test::painted_wall_camera(1 / frame_s); }
 
-Image<std::uint8_t> painted_wall() {
-  Image<std::uint8_t> wall(wall_px, height, 128);
-  Rng rng(11, "long_wall", 0);
-  for (int i = 0; i < 2300; ++i) {
-    const int u0 = static_cast<int>(rng.index(wall_px)), v0 = static_cast<int>(rng.index(height));
-    const int u1 = std::min(wall_px, u0 + 4 + static_cast<int>(rng.index(24)));
-    const int v1 = std::min(height, v0 + 4 + static_cast<int>(rng.index(24)));
-    const auto grey = static_cast<std::uint8_t>(20 + rng.index(216));
-    for (int v = v0; v < v1; ++v) std::fill(&wall.at(u0, v), &wall.at(u1 - 1, v) + 1, grey);
-  }
-  return wall;
-}
+Image<std::uint8_t> painted_wall() { return test::painted_wall(wall_px, 2300, Rng(11, "long_wall", 0)); }
 
 Config configured(const std::string& execution) {
   Config config;

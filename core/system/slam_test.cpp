@@ -11,37 +11,20 @@
 
 #include "core/base/check.h"
 #include "core/base/rng.h"
+#include "core/vision/test_painted_wall.h"
 
 namespace vsgraphs {
 namespace {
 
-constexpr int width = 320, height = 240, frame_count = 40, shift_px = 3;
+constexpr int width = test::painted_view_width, height = test::painted_view_height, frame_count = 40,
+              shift_px = 3;
 constexpr double wall_m = 2.0, fps = 30.0;
 
-Camera small_camera() {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = 262.5;
-  camera.cx = 159.5;
-  camera.cy = 119.5;
-  camera.fps = fps;
-  return camera;
-}
+Camera small_camera() { return test::painted_wall_camera(fps); }
 
-// A strip of wall as long as the way, covered with rectangles of all sizes.
+// A strip of wall as long as the way.
 Image<std::uint8_t> painted_wall() {
-  Image<std::uint8_t> wall(width + frame_count * shift_px, height, 128);
-  Rng rng(7, "painted_wall", 0);
-  for (int i = 0; i < 1500; ++i) {
-    const int u0 = static_cast<int>(rng.index(static_cast<std::uint32_t>(wall.width)));
-    const int v0 = static_cast<int>(rng.index(height));
-    const int u1 = std::min(wall.width, u0 + 4 + static_cast<int>(rng.index(24)));
-    const int v1 = std::min(height, v0 + 4 + static_cast<int>(rng.index(24)));
-    const auto grey = static_cast<std::uint8_t>(20 + rng.index(216));
-    for (int v = v0; v < v1; ++v) std::fill(&wall.at(u0, v), &wall.at(u1 - 1, v) + 1, grey);
-  }
-  return wall;
+  return test::painted_wall(width + frame_count * shift_px, 1500, Rng(7, "painted_wall", 0));
 }
 
 class ShortRun {

@@ -1,8 +1,8 @@
 // The place index in an archive.
 #include <gtest/gtest.h>
 
-#include "core/base/archive.h"
 #include "core/base/rng.h"
+#include "core/base/test_archive.h"
 #include "core/vision/place_index.h"
 
 namespace vsgraphs {
@@ -36,9 +36,7 @@ PlaceIndex some_index() {
 Bytes bytes_of(const PlaceIndex& index) {
   ArchiveWriter archive(kind);
   archive.add("index", index);
-  Bytes all;
-  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return test::joined(archive.finish());
 }
 
 PlaceIndex index_of(const Bytes& bytes) {

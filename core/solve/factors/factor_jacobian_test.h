@@ -3,10 +3,18 @@
 
 #include <vector>
 
+#include "core/base/rng.h"
 #include "core/solve/factors/dense_factor.h"
 #include "core/solve/factors/jacobian_test.h"
 
 namespace vsgraphs {
+
+// Translation and rotation evenly spread up to these, per axis.
+inline Vector6d tangent(Rng& rng, double metres, double radians) {
+  Vector6d xi;
+  for (int i = 0; i < 6; ++i) xi[i] = (i < 3 ? metres : radians) * rng.uniform(-1, 1);
+  return xi;
+}
 
 // Moves variable `v` by the tangent vector `delta`, as the solver does.
 inline void move_variable(VariableRef v, const Eigen::VectorXd& delta, std::vector<Se3>& poses,

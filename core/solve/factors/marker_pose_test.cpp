@@ -6,12 +6,6 @@
 namespace vsgraphs {
 namespace {
 
-Vector6d tangent(Rng& rng, double metres, double radians) {
-  Vector6d xi;
-  for (int i = 0; i < 6; ++i) xi[i] = (i < 3 ? metres : radians) * rng.uniform(-1, 1);
-  return xi;
-}
-
 TEST(MarkerPose, JacobiansAgreeWithDifferences) {
   Rng rng(1, "marker_pose_test", 0);
   for (double angle : {0.0, 1e-9, 1e-5, 0.05, 0.5, 1.4}) {

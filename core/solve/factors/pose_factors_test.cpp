@@ -8,12 +8,6 @@
 namespace vsgraphs {
 namespace {
 
-Vector6d tangent(Rng& rng, double metres, double radians) {
-  Vector6d xi;
-  for (int i = 0; i < 6; ++i) xi[i] = (i < 3 ? metres : radians) * rng.uniform(-1, 1);
-  return xi;
-}
-
 Matrix6d some_sqrt_information(Rng& rng) {
   Matrix6d s = Matrix6d::Identity() * 3;
   for (int i = 0; i < 36; ++i) s(i / 6, i % 6) += 0.5 * rng.normal();
