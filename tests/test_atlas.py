@@ -257,31 +257,47 @@ def test_places_that_cannot_be_written_are_told_before_the_run(
         assert not (tmp_path / "o" / "trajectory.txt").exists()
 
 
-def test_a_full_disk_leaves_a_whole_file(
-    walked: Path, recorded: Path, tmp_path: Path, vsgraphs: Program
-) -> None:
-    """A limit on the size of files stands for the disk: it ends a write in the middle."""
-    target = tmp_path / "atlas.vsg"
+def run_on_a_full_disk(
+    walked: Path, recorded: Path, folder: Path, vsgraphs: Program, *options: object
+) -> Path:
+    """Saves over an atlas where a limit on the size of files stands for the disk; returns the atlas."""
+    target = folder / "atlas.vsg"
     target.write_bytes((walked / "atlas.vsg").read_bytes())
 
     def limited() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
-    out = tmp_path / "o"
     done = vsgraphs(
-        *("run", recorded, "--out", out, "--max-frames", 30, "--save-atlas", target, "--autosave", "0.2"),
-        *("--set", "system.realtime=true"),
+        *("run", recorded, "--out", folder / "o", "--max-frames", 30, "--save-atlas", target, *options),
         preexec_fn=limited,
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
     )
     assert f"cannot write {target}: File too large" in one_line_error(done)
+    assert not list(folder.glob(".*.part"))
+    assert report(folder / "o")["tracked"] == 30  # the rest is there
+    return target
+
+
+def test_a_full_disk_leaves_the_old_file(
+    walked: Path, recorded: Path, tmp_path: Path, vsgraphs: Program
+) -> None:
+    target = run_on_a_full_disk(walked, recorded, tmp_path, vsgraphs)
+    assert target.read_bytes() == (walked / "atlas.vsg").read_bytes()
+
+
+def test_autosave_on_a_full_disk_is_told_once(
+    walked: Path, recorded: Path, tmp_path: Path, vsgraphs: Program
+) -> None:
+    target = run_on_a_full_disk(
+        walked, recorded, tmp_path, vsgraphs, "--autosave", "0.2", "--set", "system.realtime=true"
+    )
     # The old file, or a whole one saved while the map was still small.
     assert vsgraphs("info", target).returncode == 0
-    assert not list(tmp_path.glob(".*.part"))
-    assert report(out)["tracked"] == 30  # the rest is there
-    warnings = [line for line in report(out)["warnings"] if line.startswith("autosave: cannot write")]
-    assert len(warnings) == 1  # told once, however often it happened
+    warnings = [
+        line for line in report(tmp_path / "o")["warnings"] if line.startswith("autosave: cannot write")
+    ]
+    assert len(warnings) == 1  # however often it happened
 
 
 def test_a_run_in_a_room_comes_back_byte_for_byte(tmp_path: Path, vsgraphs: Program) -> None:

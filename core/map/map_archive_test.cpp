@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/rng.h"
+#include "core/base/test_archive.h"
 #include "core/map/draft.h"
 #include "core/map/test_map.h"
 
@@ -113,20 +114,28 @@ void add_planes(Map& map) {
   map.apply(MapEdit{});
 }
 
+void add_markers(Map& map) {
+  const auto keyframe = map.keyframes().at_index(2);
+  for (const std::uint32_t number : {3U, 40U}) {
+    const MarkerId id{number};
+    map.apply(AddMarker{id, {0.01 * number, test::standing_at(number), {}}});
+    map.apply(AddMarkerObservation{id, {keyframe, test::standing_at(1), 0.5 * Matrix6d::Identity()}});
+  }
+}
+
 // With everything a map can hold.
 Map full_map() {
   Map map;
   add_points(map);
   add_planes(map);
+  add_markers(map);
   return map;
 }
 
 Bytes bytes_of(const Map& map) {
   ArchiveWriter archive(kind);
   save_map(archive, "m", map);
-  Bytes all;
-  for (const auto& part : archive.finish()) all.insert(all.end(), part.begin(), part.end());
-  return all;
+  return test::joined(archive.finish());
 }
 
 Map map_of(std::span<const std::byte> bytes) {
@@ -168,6 +177,13 @@ TEST(MapArchive, ValuesComeBack) {
   ASSERT_EQ(back.structure().rooms.size(), 1U);
   EXPECT_EQ(back.structure().rooms[0].kind, RoomKind::corridor);
   EXPECT_EQ(back.structure().rooms[0].height_m, 2.5);
+  ASSERT_EQ(back.markers().size(), 2U);
+  const MappedMarker &marker = *back.markers().at({40}), &was = *map.markers().at({40});
+  EXPECT_EQ(marker.size_m, was.size_m);
+  EXPECT_EQ(marker.world_from_marker.matrix(), was.world_from_marker.matrix());
+  ASSERT_EQ(marker.observations.size(), 1U);
+  EXPECT_EQ(marker.observations[0].keyframe, was.observations[0].keyframe);
+  EXPECT_EQ(marker.observations[0].covariance, was.observations[0].covariance);
 }
 
 TEST(MapArchive, IdsGoOnWhereTheyWere) {
@@ -214,8 +230,7 @@ TEST(MapArchive, ATableThatStartsLateComesBack) {
   table.start_at(64);
   ArchiveWriter archive(kind);
   archive.add("table", table);
-  Bytes bytes;
-  for (const auto& part : archive.finish()) bytes.insert(bytes.end(), part.begin(), part.end());
+  const Bytes bytes = test::joined(archive.finish());
   EXPECT_LT(bytes.size(), 300U);  // nothing for what was passed over
   Numbers back;
   ArchiveReader("FILE", bytes, kind).read("table", back);
@@ -247,13 +262,13 @@ TEST(MapArchive, ForgedSectionsAreErrorsOrMaps) {
       }
       forged.add_bytes(name, std::move(bytes));
     }
-    Bytes bytes;
-    for (const auto& part : forged.finish()) bytes.insert(bytes.end(), part.begin(), part.end());
+    const Bytes bytes = test::joined(forged.finish());
     try {
       const Map map = map_of(bytes);
       map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { map.covisible(id, 1); });
       for (std::uint32_t i = 0; i < map.keyframes().index_bound(); ++i) map.resolve({{i, 0}, Se3{}});
       map.planes().for_each([&](PlaneId, const MappedPlane& plane) { map.observed_centre(plane); });
+      for (const auto& [id, marker] : map.markers()) map.sightings(*marker);
       bytes_of(map);
       ++maps;
     } catch (const InputError&) {

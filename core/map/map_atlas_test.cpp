@@ -99,6 +99,28 @@ TEST(AbsorbMap, KeepsItsOwnUpAndNeverGivesARoomNumberTwice) {
   EXPECT_EQ(older.map.structure().next_number, 9U);
 }
 
+TEST(AbsorbMap, MarkersMoveAndOneThatBothKnowIsOne) {
+  SmallMap older, younger(SmallMap().map.unused_ids());
+  constexpr MarkerId shared{3}, own{9};
+  const auto hang = [](SmallMap& small, MarkerId id, double x) {
+    const Se3 seen = standing_at(x);
+    small.map.apply(AddMarker{id, {0.16, seen, {}}});
+    small.map.apply(AddMarkerObservation{id, {small.keyframes[0], seen}});
+  };
+  hang(older, shared, 1);
+  hang(younger, shared, -2);
+  hang(younger, own, -3);
+  const Se3 moved = standing_at(3);
+  older.map.apply(AbsorbMap{younger.map.snapshot(), moved});
+  const Markers& markers = older.map.markers();
+  ASSERT_EQ(markers.size(), 2U);
+  EXPECT_EQ(markers.at(shared)->observations.size(), 2U);
+  EXPECT_TRUE(markers.at(shared)->world_from_marker.matrix().isApprox(standing_at(1).matrix(), 1e-12));
+  EXPECT_EQ(markers.at(own)->observations.size(), 1U);
+  const Se3 expected = moved * standing_at(-3);
+  EXPECT_TRUE(markers.at(own)->world_from_marker.matrix().isApprox(expected.matrix(), 1e-12));
+}
+
 TEST(AbsorbMap, HashSaysWhatAndWhere) {
   SmallMap younger(SmallMap().map.unused_ids());
   const Snapshot as_it_was = younger.map.snapshot();
