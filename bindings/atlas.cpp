@@ -99,7 +99,7 @@ void bind_atlas(nb::module_& m) {
           "path"_a, nb::call_guard<nb::gil_scoped_release>(),
           "Writes the file as a whole or not at all: an old file stays until the new one is complete. Raises "
           "InputError\n"
-          "naming the file and the cause. About 1 ms per keyframe.")
+          "naming the file and the cause.")
       .def("info", &info_of, nb::sig("def info(self) -> dict[str, typing.Any]"),
            "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors "
            "of "
@@ -130,7 +130,7 @@ void bind_atlas(nb::module_& m) {
       "load_atlas", &load_atlas, "path"_a, nb::call_guard<nb::gil_scoped_release>(),
       "Reads a saved atlas. Raises InputError, one line that names the file, where it cannot be read, is no "
       "atlas, is\n"
-      "damaged or was saved by a newer version. About 1 ms per keyframe.");
+      "damaged or was saved by a newer version.");
   m.def("require_writable", &require_writable, "path"_a,
         "Raises the InputError that saving a file of this name would raise; writes nothing that stays.");
 }
