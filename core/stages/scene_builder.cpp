@@ -165,6 +165,20 @@ bool SceneBuilder::another_is_the_wall(const Map& map, PlaneId id) const {
   return found;
 }
 
+// One vote of each keyframe that saw the plane, shared among its patches by area: a segmenter splits a wall at its posters,
+// and many small ones do not outvote the wall.
+RoleVotes SceneBuilder::segmenter_votes(const Map& map, const MappedPlane& plane) {
+  std::map<KeyframeId, float> seen_m2;
+  for (const PlaneObservation& o : plane.observations) seen_m2[o.keyframe] += map.patch(o)->area_m2;
+  RoleVotes votes{};
+  for (const PlaneObservation& o : plane.observations) {
+    const SurfacePatch& patch = *map.patch(o);
+    const float share = patch.area_m2 / seen_m2.at(o.keyframe);
+    for (std::size_t r = 0; r < surface_role_count; ++r) votes[r] += share * patch.votes[r];
+  }
+  return votes;
+}
+
 void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft) const {
   const Eigen::Vector3d up = *draft.map().up_in_world();
   // Level surfaces first: walls are measured from the ground.
@@ -176,22 +190,22 @@ void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft
     const MappedPlane& plane = *draft.map().planes().find(id);
     const auto evidence = evidence_.find(id);
     if (evidence == evidence_.end()) continue;
-    RoleVotes votes{};
-    for (const PlaneObservation& o : plane.observations) {
-      const SurfacePatch& patch = *draft.map().patch(o);
-      for (std::size_t r = 0; r < surface_role_count; ++r) votes[r] += patch.votes[r];
-    }
+    RoleVotes votes = segmenter_votes(draft.map(), plane);
     SurfaceRole geometric =
         role_by_geometry(facts_of(draft.map(), plane), evidence->second, up, options_.role);
-    if (geometric == SurfaceRole::wall && another_is_the_wall(draft.map(), id))
-      geometric = SurfaceRole::other;
+    // What hangs on a wall is none, whoever says so: a network takes a curtain for one as easily.
+    const bool may_be_wall = geometric == SurfaceRole::wall ||
+                             votes[static_cast<std::size_t>(SurfaceRole::wall)] >= options_.accepted_votes;
+    const bool hangs_on_wall = may_be_wall && another_is_the_wall(draft.map(), id);
+    if (hangs_on_wall && geometric == SurfaceRole::wall) geometric = SurfaceRole::other;
     if (geometric != SurfaceRole::undecided)
       votes[static_cast<std::size_t>(geometric)] += static_cast<float>(options_.geometry_votes);
     SurfaceRole role = SurfaceRole::undecided;
     auto most = static_cast<float>(options_.accepted_votes);
     for (std::size_t r = 1; r < surface_role_count; ++r) {
       const auto candidate = static_cast<SurfaceRole>(r);
-      if (votes[r] < most || !stance_allows(candidate, plane.plane.normal, up, options_.role.max_tilt_rad))
+      if (votes[r] < most || (candidate == SurfaceRole::wall && hangs_on_wall) ||
+          !stance_allows(candidate, plane.plane.normal, up, options_.role.max_tilt_rad))
         continue;
       most = votes[r];
       role = candidate;

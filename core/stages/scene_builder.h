@@ -62,6 +62,7 @@ class SceneBuilder {
   void find_up_direction(Draft& draft) const;
   void gather_evidence(KeyframeId keyframe, const Map& map);
   void classify(const std::vector<PlaneId>& candidates, Draft& draft) const;
+  static RoleVotes segmenter_votes(const Map& map, const MappedPlane& plane);
   bool another_is_the_wall(const Map& map, PlaneId id) const;
   SurfaceFacts facts_of(const Map& map, const MappedPlane& plane) const;
   void pair_faces(const std::vector<PlaneId>& touched, Draft& draft) const;

@@ -119,6 +119,36 @@ TEST_F(SceneBuilderTest, VotesChangeAClassAndItCanBeLostAgain) {
   EXPECT_EQ(role_at({0, 3, 1}, south), SurfaceRole::wall);
 }
 
+TEST_F(SceneBuilderTest, ManySmallPostersDoNotOutvoteTheirWall) {
+  walk();
+  LabelGrid labels = all_labelled(SurfaceRole::wall, 0.9F);
+  // A quarter of the image, in columns: each a patch of its own.
+  for (int row = 0; row < labels.rows; ++row) {
+    for (int column = 4; column < labels.columns; column += 16) {
+      for (int c = column; c < std::min(column + 4, labels.columns); ++c)
+        labels.samples[static_cast<std::size_t>(row * labels.columns + c)].role = SurfaceRole::other;
+    }
+  }
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { propose(id, &labels); });
+  const auto wall = planes_at({0, 3, 1}, south);
+  ASSERT_THAT(wall, SizeIs(1));
+  const auto votes = [&](SurfaceRole role) { return plane(wall[0]).votes[static_cast<std::size_t>(role)]; };
+  EXPECT_GT(plane(wall[0]).observations.size(), 9U) << "more posters than walls";
+  EXPECT_GT(votes(SurfaceRole::wall), 2 * votes(SurfaceRole::other));
+  EXPECT_LT(votes(SurfaceRole::wall) + votes(SurfaceRole::other), 3 * 0.9 + 1.5 + 1e-3)
+      << "a keyframe has one vote";
+  EXPECT_EQ(plane(wall[0]).role, SurfaceRole::wall);
+}
+
+TEST_F(SceneBuilderTest, ANetworkDoesNotMakeACurtainAWall) {
+  world.sheet({-0.7, 2.88, 0.4}, {1.6, 0, 0}, {0, 0, 1.8});
+  walk();
+  const LabelGrid wall = all_labelled(SurfaceRole::wall, 0.9F);
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { propose(id, &wall); });
+  EXPECT_EQ(role_at({0, 2.88, 1}, south), SurfaceRole::other);
+  EXPECT_EQ(role_at({0, 3, 1}, south), SurfaceRole::wall);
+}
+
 TEST_F(SceneBuilderTest, ANetworkDoesNotMakeAFloorAWall) {
   walk();
   const LabelGrid wall = all_labelled(SurfaceRole::wall, 1.0F);
