@@ -5,9 +5,10 @@
     vsgraphs run FOLDER --execution serial --out geometry
     benchmarks/class_agreement.py FOLDER network geometry
 
-Of every keyframe of the first run each eighth pixel with depth is put into both maps, by each run's own pose, and
-takes the role of the mapped plane it lies on (within 5 cm, and on an observed cell). So roles are compared after
-the votes of all keyframes. Precision and recall are of pixels on which both have an opinion. Where FOLDER has labels.txt, the first run is compared with them too.
+Of every keyframe of the first run each eighth pixel with depth is put into both maps, by each run's own
+pose, and takes the role of the mapped plane it lies on (within 5 cm, and on an observed cell). So roles are
+compared after the votes of all keyframes. Precision and recall are of pixels on which both have an opinion.
+Where FOLDER has labels.txt, the first run is compared with them too.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ class Run:
         return {(int(u) + du, int(v) + dv) for u, v in cells for du in (-1, 0, 1) for dv in (-1, 0, 1)}
 
     def roles(self, points: Array, timestamp: float) -> npt.NDArray[np.str_] | None:
-        """Role of the nearest plane that each of (N, 3) points of the camera lies on, or "none"; None without a pose."""
+        """Role of the nearest plane under each of (N, 3) points of the camera, or "none"; None: no pose."""
         times = self.trajectory.timestamps
         at = int(np.argmin(np.abs(times - timestamp)))
         if abs(times[at] - timestamp) > TIME_TOLERANCE_S:
@@ -65,7 +66,7 @@ class Run:
 
 
 class Agreement:
-    """Pixels that one side, the other and both give a role, where both have an opinion; and where one alone has."""
+    """Pixels that one side, the other and both give a role, where both decide; and the first alone."""
 
     def __init__(self) -> None:
         self.mine, self.other, self.both, self.alone = (dict.fromkeys(ROLES, 0) for _ in range(4))
@@ -126,7 +127,7 @@ def main() -> None:
         if truth is not None:
             names = np.array([role.name.lower() for role in SurfaceRole])
             with_labels.add(mine, names[truth.roles[pixels]])
-    print("| against | role | pixels both decide on | the first alone | precision | recall |\n|---|---|---|---|---|---|")
+    print("| against | role | both decide | first alone | precision | recall |\n|---|---|---|---|---|---|")
     with_reference.tell(str(given.reference))
     if labels:
         with_labels.tell("labels.txt")

@@ -37,6 +37,18 @@ def test_the_example_runs(scene: Scene, tmp_path: Path) -> None:
     assert np.abs(position - scene.pose(19)[:3, 3]).max() < 0.01
 
 
+def test_the_example_of_the_readme_runs(scene: Scene, tmp_path: Path) -> None:
+    folder = write_tum(tmp_path / "slide", scene)
+    _, _, rest = (ROOT / "README.md").read_text().partition("```python\n")
+    program, _, _ = rest.partition("```")
+    program = program.replace("path/to/sequence", str(folder)) + "\nprint(len(poses), rooms)"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["20", "{}"], "a wall of paint, seen for two seconds, is no room"
+
+
 @pytest.mark.parametrize("depth_in_metres", [False, True])
 @pytest.mark.parametrize("grey", [False, True])
 def test_track(scene: Scene, camera: vsgraphs.Camera, depth_in_metres: bool, grey: bool) -> None:

@@ -1,42 +1,57 @@
-// Where the camera should be now: constant velocity, and how far it can have gone.
+// Where the camera should be now: constant velocity, believed as far as it was measured.
+// A Kalman filter (Kalman, 1960) of the velocity, whose random walk dies down where nothing measures it (Ornstein-Uhlenbeck).
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "core/geometry/principal_axes.h"
 #include "core/geometry/se3.h"
 
 namespace vsgraphs {
 
 class MotionModel {
  public:
-  // Constant velocity from the last two known poses, scaled by time; the last pose where only one is known.
-  // Extrapolates over half a second at the most.
+  // Constant velocity, scaled by time; the last pose where only one is known. Extrapolates over half a second at the most.
   Se3 predict(const Se3& world_from_last, double seconds) const {
-    if (!twist_per_s_) return world_from_last;
-    return world_from_last.retract(*twist_per_s_ * std::min(seconds, max_extrapolation_s));
+    if (!known_) return world_from_last;
+    return world_from_last.retract(twist_per_s_ * std::min(seconds, max_extrapolation_s));
   }
 
-  // `information`: what was measured of the pose (tangent on its right). In directions it hardly knows the pose is a
-  // prediction, and taking that for a measurement would let the velocity wander off by itself: there the old velocity
-  // dies down instead.
+  // `information`: what was measured of the two poses (tangent on their right), the inverse of their covariance. A velocity is a
+  // difference of poses: what a few matches say of it is mostly noise, and what only a prediction held says nothing.
   void update(const Se3& world_from_previous, const Se3& world_from_now, double seconds,
               const Matrix6d& information) {
     if (seconds <= 0) return;
     const Vector6d measured = (world_from_previous.inverse() * world_from_now).log() / seconds;
-    const Vector6d fading = std::exp(-seconds / fading_s) * twist_per_s_.value_or(Vector6d::Zero());
-    twist_per_s_ = measured + weak_directions(information, weak_sigma) * (fading - measured);
+    const double fading = std::exp(-seconds / fading_s);
+    twist_per_s_ *= fading;
+    if (known_) {
+      covariance_ = fading * fading * covariance_;
+      covariance_.diagonal() += seconds * acceleration();
+    }
+    const Matrix6d gained = 0.5 * seconds * seconds * information;
+    const Matrix6d predicted = covariance_.inverse();
+    covariance_ = (predicted + gained).ldlt().solve(Matrix6d::Identity());
+    twist_per_s_ += covariance_ * gained * (measured - twist_per_s_);
+    known_ = true;
   }
-  void forget() { twist_per_s_.reset(); }
-  bool known() const { return twist_per_s_.has_value(); }
+  void forget() { *this = MotionModel{}; }
+  bool known() const { return known_; }
 
  private:
   // Beyond this a straight extrapolation is worth less than standing still.
   static constexpr double max_extrapolation_s = 0.5;
-  static constexpr double fading_s = 5.0, weak_sigma = 0.03;  // m or rad
-  std::optional<Vector6d> twist_per_s_;
+  static constexpr double fading_s = 5.0;
+  // What a hand does to a camera: changes of velocity of 0.5 m/s and 1 rad/s within a third of a second are common.
+  static Vector6d acceleration() {
+    return (Vector6d() << 0.8, 0.8, 0.8, 3, 3, 3).finished();
+  }  // m^2/s^3, rad^2/s^3
+
+  bool known_ = false;
+  Vector6d twist_per_s_ = Vector6d::Zero();
+  Matrix6d covariance_ = 4.0 * Matrix6d::Identity();  // of a camera of which nothing is known: 2 m/s, 2 rad/s
 };
 
 }  // namespace vsgraphs

@@ -193,18 +193,20 @@ void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft
     RoleVotes votes = segmenter_votes(draft.map(), plane);
     SurfaceRole geometric =
         role_by_geometry(facts_of(draft.map(), plane), evidence->second, up, options_.role);
-    // What hangs on a wall is none, whoever says so: a network takes a curtain for one as easily.
-    const bool may_be_wall = geometric == SurfaceRole::wall ||
-                             votes[static_cast<std::size_t>(SurfaceRole::wall)] >= options_.accepted_votes;
-    const bool hangs_on_wall = may_be_wall && another_is_the_wall(draft.map(), id);
-    if (hangs_on_wall && geometric == SurfaceRole::wall) geometric = SurfaceRole::other;
+    const bool called_wall = geometric == SurfaceRole::wall ||
+                             (geometric == SurfaceRole::undecided &&
+                              votes[static_cast<std::size_t>(SurfaceRole::wall)] >= options_.accepted_votes);
+    if (called_wall && another_is_the_wall(draft.map(), id)) geometric = SurfaceRole::other;
     if (geometric != SurfaceRole::undecided)
       votes[static_cast<std::size_t>(geometric)] += static_cast<float>(options_.geometry_votes);
     SurfaceRole role = SurfaceRole::undecided;
     auto most = static_cast<float>(options_.accepted_votes);
     for (std::size_t r = 1; r < surface_role_count; ++r) {
       const auto candidate = static_cast<SurfaceRole>(r);
-      if (votes[r] < most || (candidate == SurfaceRole::wall && hangs_on_wall) ||
+      // Geometry says `other` of what it has seen to end in the air, or to hang on a wall: no network makes a wall of that.
+      const bool excluded = geometric == SurfaceRole::other &&
+                            (candidate == SurfaceRole::wall || candidate == SurfaceRole::ground);
+      if (votes[r] < most || excluded ||
           !stance_allows(candidate, plane.plane.normal, up, options_.role.max_tilt_rad))
         continue;
       most = votes[r];

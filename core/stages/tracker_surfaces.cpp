@@ -63,6 +63,9 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
 std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const SurfaceReference& reference,
                                                    const Se3& guess, const PosePriorTerm& prior,
                                                    double seconds) {
+  // One or two matches nothing speaks for: a wrong one would move the camera wherever surfaces do not hold it.
+  constexpr int corroborating_matches = 3;
+  if (matches_.size() < corroborating_matches) matches_.reset(now_.features->size());
   const auto observations = pose_observations(camera_, pyramid_, *now_.features, matches_);
   DepthAlignment aligned = aligner_.align(map, surface_now(), reference, guess, observations, prior);
   // A mapped plane may be off, or another one than it seems after a large step: then the reference's depth decides alone.
@@ -73,6 +76,8 @@ std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const Surface
   std::vector<std::uint8_t> inlier(observations.size());
   for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(aligned.solution.fit[i]);
   matches_.keep(inlier);
+  if (!observations.empty() && matches_.size() < corroborating_matches)
+    return hold_by_surfaces(map, reference, guess, prior, seconds);
   now_.surface_reference = reference.id;
   return FramePose{pose,
                    matches_.size(),
