@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/scene/basins.h"
 #include "core/scene/clearance.h"
@@ -76,7 +77,7 @@ void close_opening(const GridFrame& frame, const WallOpening& opening, GridValue
 
 bool divides_rooms(const Narrowing& narrow, const LevelMap& map, std::span<const WallLine> walls,
                    const ClusterOptions& options, const OpeningOptions& openings) {
-  if (narrow.gap.width_m < openings.min_width_m || narrow.gap.width_m > openings.max_width_m) return false;
+  if (narrow.gap.width_m > openings.max_width_m) return false;
   const OpeningEvidence evidence = opening_evidence(narrow.gap, map, walls, openings, narrow_place_m);
   if (evidence.sufficient()) return true;
   // Walls that were not made out yet: the shape of the free space has to do, and wall above the gap if walls are known
@@ -157,7 +158,9 @@ Clusters find_clusters(const LevelMap& map, std::span<const WallLine> walls,
   const Basins basins = find_basins(
       map.frame, result.clearance_m, options.min_persistence_m,
       [&](const Narrowing& narrow) { return divides_rooms(narrow, map, walls, options, opening_options); });
-  openings.insert(openings.end(), basins.openings.begin(), basins.openings.end());
+  // Where wall is missing over a width nobody walks through, it divides all the same.
+  std::copy_if(basins.openings.begin(), basins.openings.end(), std::back_inserter(openings),
+               [&](const WallOpening& gap) { return gap.width_m >= opening_options.min_width_m; });
   keep_clusters(map.frame, basins, cameras, options.min_area_m2, result);
   for (const WallOpening& opening : openings) {
     const std::array<int, 2> sides{cluster_beside(map.frame, result, opening, -1),

@@ -63,6 +63,15 @@ TEST(Clusters, ADoorwayDividesAWiderPassageDoesNot) {
   EXPECT_EQ(clusters_of(two_halves(gap(18, ':'))).clusters.size(), 1u);
 }
 
+TEST(Clusters, ACrackInAWallDividesAndIsNoOpening) {
+  // A wall not seen over a width nobody walks through.
+  std::string between(26, '#');
+  std::fill_n(between.begin() + 8, 3, ':');
+  const Clusters found = clusters_of(two_halves(between));
+  EXPECT_EQ(found.clusters.size(), 2u);
+  EXPECT_TRUE(found.openings.empty());
+}
+
 TEST(Clusters, ANarrowPlaceUnderFreeSpaceIsFurniture) {
   std::string between(26, '+');
   std::fill_n(between.begin() + 8, 9, '.');

@@ -93,7 +93,7 @@ void block_walls(std::span<const SceneFace> walls, const LevelOptions& options, 
   for (const SceneFace& wall : walls)
     for (const Eigen::Vector3f& p : wall.points) {
       const double above = p.z() - map.ground_m;
-      if (above < options.band_low_m || above > options.band_high_m) continue;
+      if (above < options.band_low_m || above > head_m(options)) continue;
       const int index = map.frame.index_at(p.head<2>().cast<double>());
       if (index < 0) continue;
       map.cells[static_cast<std::size_t>(index)] = CellState::blocked;

@@ -38,6 +38,10 @@ void describe(LevelOptions& o, Visitor& field) {
         "grounds closer above each other than this are one storey: the largest stands for it");
 }
 
+// Wall seen below this height above the ground is in the way of a person. A wall's points stand for cells of 0.1 m: one
+// near the top of the free band may be the lower edge of the lintel of a door (1.98 m and more).
+inline double head_m(const LevelOptions& options) { return options.band_high_m - 0.1; }
+
 // Heights of the storeys, ascending. A table top or a landing taken for ground does not make a storey: it is too close to
 // a larger one.
 std::vector<double> level_heights(std::span<const SceneFace> grounds, const LevelOptions& options);
@@ -59,10 +63,10 @@ struct LevelMap {
   // open: one can see through at eye level, whatever stands below (tables, chairs); blocked: something is there, or there is
   // no ground (a stairwell).
   GridValues<CellState> cells;
-  GridValues<char> walls;  // 1: a wall's points lie here, within the free band
+  GridValues<char> walls;  // 1: a wall's points lie here, between the free band's lower end and head_m()
 };
 
-// Walls' points in the free band block their cells too. Linear in the grid's blocks.
+// Walls' points between band_low_m and head_m() block their cells too. Linear in the grid's blocks.
 LevelMap build_level_map(const VoxelBlocks& voxels, double voxel_m, double ground_m,
                          std::span<const SceneFace> walls, const LevelOptions& options);
 

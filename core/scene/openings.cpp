@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace vsgraphs {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr double parallel_cosine = 0.94;  // 20 deg
 constexpr double across_cosine = 0.5;
 constexpr double own_line_m = 0.15;                             // pieces of one wall are in line this well
+constexpr double stray_m = 0.15;                                // one closed cell does not end an opening
 constexpr double through_front_m = 0.3, through_back_m = 0.45;  // both sides of an opening are free this far
 
 CellState state_at(const LevelMap& map, const Eigen::Vector2d& point) {
@@ -81,17 +83,21 @@ std::vector<WallOpening> openings_along(const LevelMap& map, const WallLine& wal
   std::vector<WallOpening> openings;
   const double step = 0.5 * map.frame.cell_m;
   const double first = wall.from_m() - options.max_width_m, last = wall.to_m() + options.max_width_m;
-  std::optional<double> began;
-  for (double t = first; t <= last + step; t += step) {
-    const bool open = t <= last && open_through(map, wall, t);
-    if (open && !began) began = t;
-    if (open || !began) continue;
+  std::optional<std::pair<double, double>> run;  // first and last open place
+  const auto close_run = [&] {
     // Runs that touch the end of the stretch looked at are wider than they seem.
-    if (*began > first && t <= last)
-      if (const auto opening = opening_between(wall, *began - 0.5 * step, t - 0.5 * step, options))
+    if (run && run->first > first && run->second + step <= last)
+      if (const auto opening = opening_between(wall, run->first - 0.5 * step, run->second + 0.5 * step, options))
         openings.push_back(*opening);
-    began.reset();
+    run.reset();
+  };
+  for (double t = first; t <= last; t += step) {
+    if (open_through(map, wall, t))
+      run = {run ? run->first : t, t};
+    else if (run && t - run->second > stray_m)
+      close_run();
   }
+  close_run();
   return openings;
 }
 

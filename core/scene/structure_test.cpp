@@ -99,6 +99,21 @@ TEST(Structure, DoorwayDividesTwoRooms) {
   }
 }
 
+// Wall above a door is kept as cells whose middle may lie lower than the door's top.
+TEST(Structure, WhereTheCellsOfALintelBeginChangesNothing) {
+  for (const double height : {1.98, 2.05}) {
+    TestBuilding b = test::two_rooms();
+    b.doors[0].height = height;
+    const TestWalk walk = test::walk_two_rooms(b);
+    const FreeSpace free_space = walk.free_space();
+    for (double phase = 0; phase < 0.1; phase += 0.02) {
+      const FoundStructure found = recognise_structure(free_space, walk.faces_in_cells(phase), {}, {});
+      EXPECT_EQ(found.rooms.size(), 2u) << height << ' ' << phase;
+      EXPECT_EQ(found.doors.size(), 1u) << height << ' ' << phase;
+    }
+  }
+}
+
 TEST(Structure, DoorLeafOpenOrHalfOpenChangesNothing) {
   for (const double degrees : {90.0, 50.0}) {
     TestBuilding b = test::two_rooms();

@@ -115,6 +115,15 @@ class TestWalk {
         (s.kind == 0 ? seen.walls : s.kind == 1 ? seen.grounds : seen.ceilings).push_back(s.face);
     return seen;
   }
+  // The same, each wall point at the middle of its cell of 0.1 m, the way maps keep them. Cells begin `phase_m` above a
+  // multiple of their size.
+  SceneFaces faces_in_cells(double phase_m) const {
+    SceneFaces seen = faces();
+    for (SceneFace& wall : seen.walls)
+      for (Eigen::Vector3f& p : wall.points)
+        p.z() = static_cast<float>((std::floor((p.z() - phase_m) / 0.1) + 0.5) * 0.1 + phase_m);
+    return seen;
+  }
   // Ids of a room's walls, as seen in faces().
   std::vector<PlaneId> walls_of(std::size_t room) const {
     std::vector<PlaneId> ids;

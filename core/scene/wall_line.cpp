@@ -39,8 +39,7 @@ std::optional<WallLine> WallLine::from_face(const SceneFace& face, double ground
   }
   if (line.from_m_ > line.to_m_) return std::nullopt;
   line.mark(face.points, ground_m, ground_m + options.wall_high_m, line.seen_);
-  line.mark(face.points, ground_m + options.band_low_m, ground_m + options.band_high_m - 0.1,
-            line.seen_in_band_);
+  line.mark(face.points, ground_m + options.band_low_m, ground_m + head_m(options), line.seen_in_band_);
   return line;
 }
 
