@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from vsgraphs.markers import MarkerDetector, MarkerRegistry
-from vsgraphs.markers.poses import corners_of, covariance_of, refine
+from vsgraphs.markers.poses import decide
+from vsgraphs.markers.square import DepthReadings, corners_of, covariance_of, refine
 from vsgraphs.trajectory import Array
 
 cv2 = pytest.importorskip("cv2")
@@ -34,6 +35,7 @@ def camera(distortion: tuple[float, ...] = (0, 0, 0, 0, 0)) -> Any:
         depth_max_m=8.0,
         invalid_depth=[0, 65535],
         depth_noise=(0.0012, 0.0019, 0.4),
+        depth_alignment_m=0.01,
     )
 
 
@@ -184,6 +186,64 @@ def test_the_covariance_is_that_of_noisy_corners() -> None:
         moves.append(np.concatenate([off[:3, 3], cv2.Rodrigues(off[:3, :3])[0].ravel()]))
     predicted = np.sqrt(np.diag(covariance_of(truth, SIZE_M, camera(), sigma_px)))
     np.testing.assert_allclose(np.std(moves, axis=0), predicted, rtol=0.15)
+
+
+def noisy_corners_and_depth(truth: Array, random: Any) -> tuple[Array, Array]:
+    """(4, 2) pixels and (h, w) metres of the marker's plane, as uncertain as `camera()` says they are."""
+    seen_by, points = camera(), corners_of(SIZE_M) @ truth[:3, :3].T + truth[:3, 3]
+    corners = points[:, :2] / points[:, 2:] * FOCAL + [seen_by.cx, seen_by.cy]
+    v, u = np.mgrid[0:HEIGHT, 0:WIDTH]
+    slant = np.stack([(u - seen_by.cx) / FOCAL, (v - seen_by.cy) / FOCAL, np.ones(u.shape)], -1) @ truth[:3, 2]
+    depth = (truth[:3, 2] @ truth[:3, 3]) / slant
+    offset, scale, onset = seen_by.depth_noise
+    # As noisy as few independent readings; and what they all have in common.
+    noise = (offset + scale * (depth - onset) ** 2) * random.standard_normal(depth.shape)
+    common = seen_by.depth_alignment_m * random.standard_normal()
+    return corners + 0.5 * random.standard_normal((4, 2)), (depth + noise + common).astype(np.float32)
+
+
+def test_depth_says_how_far_away_a_marker_is() -> None:
+    """Half a pixel in a side of 28 is 5 cm in 3 m; its depth is known to 2 cm."""
+    truth = pose_of(0.2, 0.1, 3.0, 30, -10)
+    random = np.random.default_rng(2)
+    by_corners, by_both, predicted = [], [], []
+    for _ in range(100):
+        corners, metres = noisy_corners_and_depth(truth, random)
+        by_corners.append(refine(truth, corners, SIZE_M, camera())[2, 3] - truth[2, 3])
+        found = decide([truth], corners, SIZE_M, metres, camera())
+        assert found is not None
+        by_both.append(found.camera_from_marker[2, 3] - truth[2, 3])
+        rotation = found.camera_from_marker[:3, :3]
+        predicted.append(np.sqrt((rotation @ found.covariance[:3, :3] @ rotation.T)[2, 2]))
+    assert np.std(by_corners) > 0.04
+    assert np.std(by_both) < 0.015
+    assert abs(np.mean(by_both)) < 0.01
+    assert np.std(by_both) < np.mean(predicted) < 2 * np.std(by_both)
+
+
+def test_the_derivatives_of_readings_are_those_of_their_residuals() -> None:
+    pose = pose_of(0.2, 0.1, 1.5, 30, -10)
+    _, metres = noisy_corners_and_depth(pose, np.random.default_rng(3))
+    readings = DepthReadings.at(pose, SIZE_M, metres, camera())
+    assert readings is not None
+    at_rest, jacobian = readings.rows(pose)
+    for axis in range(6):
+        move = np.zeros(6)
+        move[axis] = 1e-6
+        moved = pose.copy()
+        moved[:3, :3] = pose[:3, :3] @ cv2.Rodrigues(move[3:])[0]
+        moved[:3, 3] += pose[:3, :3] @ move[:3]
+        numeric = (readings.rows(moved)[0] - at_rest) / 1e-6
+        np.testing.assert_allclose(jacobian[:, axis], numeric, atol=1e-3 * np.abs(jacobian).max())
+
+
+def test_a_reading_of_the_wall_behind_is_left_out() -> None:
+    truth = pose_of(0.2, 0.1, 1.5, 30, -10)
+    corners, metres = noisy_corners_and_depth(truth, np.random.default_rng(4))
+    metres[:, : int(319.5 + FOCAL * 0.2 / 1.5) - 12] += 0.8  # a strip of the print
+    found = decide([truth], corners, SIZE_M, metres, camera())
+    assert found is not None
+    assert error(found.camera_from_marker, truth)[0] < 0.02
 
 
 def test_without_opencv_the_extra_is_named() -> None:

@@ -222,6 +222,23 @@ def test_rooms_by_overlap(world: Any) -> None:
     assert counts(scored(world, edited(world, split)).rooms) == (3, 3, 1, 0, 1)
 
 
+def test_a_landing_is_part_of_a_stairwell_that_is_not_scored(world: Any) -> None:
+    def landing(raw: Raw) -> None:
+        upper = copy.deepcopy(raw["rooms"][3])
+        upper["id"] = 9
+        upper["polygon"] += 2.8 * raw["up"]
+        raw["rooms"].append(upper)
+
+    def of_height(height_m: float) -> Raw:
+        truth = copy.deepcopy(world[0])
+        truth["rooms"][3].update(kind="stairs", height=height_m)
+        return truth
+
+    graph = edited(world, landing)
+    assert counts(scored(world, graph, of_height(5.4)).rooms) == (3, 3, 0, 0, 2)
+    assert counts(scored(world, graph, of_height(2.6)).rooms) == (3, 3, 1, 0, 1)
+
+
 def test_doors_need_their_place_and_their_rooms(world: Any) -> None:
     def slide(raw: Raw, by: float) -> None:
         raw["doors"][0]["center"] = raw["doors"][0]["center"] + np.array([by, 0, 0])

@@ -20,8 +20,9 @@ from vsgraphs.cli.viewing import RunView, Showing, view_run
 from vsgraphs.datasets import Calibration
 from vsgraphs.errors import InputError
 from vsgraphs.scene_graph import SceneGraph, format_scene_graph
+from vsgraphs.lens import depth_metres, distort
 from vsgraphs.view import ports, sinks
-from vsgraphs.view.camera import back_project, depth_metres, distort, landmarks_in_view, pixel_rays
+from vsgraphs.view.camera import back_project, landmarks_in_view, pixel_rays
 from vsgraphs.view.layers import MAX_LINKED_KEYFRAMES, layered_graph, wall_heading
 from vsgraphs.view.layout import gaze_at
 from vsgraphs.view.surfaces import door_outline, plane_mesh, room_mesh, room_place, triangulate, upright

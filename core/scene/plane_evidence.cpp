@@ -27,11 +27,13 @@ void PlaneEvidence::count_on(Cell c) {
 }
 
 void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
-                              const DepthNoise& noise) {
+                              const DepthNoise& noise, bool observes_it) {
+  if (!observes_it && low_.s > high_.s) return;  // not seen yet
   const double from_camera = plane.signed_distance(world_from_camera.translation());
   if (from_camera < 0.1 || from_camera > max_range_m)
     return;  // seen from behind, from within, or out of reach
   const Eigen::Vector3d normal = world_from_camera.rotation().transpose() * plane.normal;
+  constexpr int own_margin = static_cast<int>(own_margin_m / cell_m);
   std::vector<Cell> passed;
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = r % 2; c < grid.columns; c += 2) {
@@ -50,18 +52,16 @@ void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid,
       // Rays that graze the plane meet it far off.
       if (at.cwiseAbs().maxCoeff() > 100.0) continue;
       const Cell cell = cell_at(at.x(), at.y(), cell_m);
-      if (on)
-        count_on(cell);
-      else
+      if (!on)
         passed.push_back(cell);
+      else if (observes_it || near_box(cell, own_margin))
+        count_on(cell);
     }
   }
   if (low_.s > high_.s) return;
   constexpr int margin = static_cast<int>(margin_m / cell_m);
   for (const Cell& c : passed) {
-    if (c.s < low_.s - margin || c.s > high_.s + margin || c.t < low_.t - margin || c.t > high_.t + margin)
-      continue;
-    count(cells_[c].through);
+    if (near_box(c, margin)) count(cells_[c].through);
   }
 }
 

@@ -23,9 +23,11 @@ class PlaneEvidence {
   explicit PlaneEvidence(const PlaneFrame& frame) : frame_(frame) {}
 
   // Adds the rays of one keyframe that meet the plane within `margin_m` of where it was seen before or is seen now.
-  // Only rays that come from the side the plane faces count. Cost: the grid's samples, every other one of each row.
+  // Only rays that come from the side the plane faces count. `observes_it`: the keyframe found the plane; others tell of
+  // it only near where it was seen, because what lies in line with it elsewhere (on the next storey) is another surface.
+  // Cost: the grid's samples, every other one of each row.
   void integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
-                 const DepthNoise& noise);
+                 const DepthNoise& noise, bool observes_it = true);
   // Takes over what was counted for a plane that turned out to be the same.
   void add(const PlaneEvidence& other);
 
@@ -55,12 +57,18 @@ class PlaneEvidence {
  private:
   static constexpr int min_on = 2, min_through = 2;
   static constexpr double margin_m = 1.0;
+  static constexpr double own_margin_m = 0.3;  // a keyframe that does not observe the plane adds surface up to here
 
   PlaneFrame frame_;
   CellGrid<CellEvidence> cells_;
   // Bounding box of `on` cells; empty while low > high.
   Cell low_{1, 1}, high_{0, 0};
   void count_on(Cell c);
+  // Within this many cells of the box.
+  bool near_box(Cell c, int margin) const {
+    return c.s >= low_.s - margin && c.s <= high_.s + margin && c.t >= low_.t - margin &&
+           c.t <= high_.t + margin;
+  }
 };
 
 }  // namespace vsgraphs

@@ -53,6 +53,24 @@ TEST_F(PlaneEvidenceTest, FarBeyondItsEdgeNothingIsKept) {
   EXPECT_EQ(evidence.cells().at(cell_at(far_off.x(), far_off.y(), PlaneEvidence::cell_m)).through, 0);
 }
 
+TEST_F(PlaneEvidenceTest, WhatLiesInLineWithItElsewhereIsAnotherSurface) {
+  world.sheet({-0.5, 2, 1.2}, {1, 0, 0}, {0, 0, 1});
+  const Se3 higher = looking({0, 0, 1.7}, {0, 2, 1.7});
+  const PlaneFrame frame = frame_of(board, up);
+  PlaneEvidence evidence(frame);
+  evidence.integrate(board, view(world, higher), higher, Camera{}.depth_noise, false);
+  EXPECT_TRUE(evidence.cells().empty()) << "it has not been seen yet";
+  look(evidence, ahead);
+  for (int i = 0; i < 3; ++i)
+    evidence.integrate(board, view(world, higher), higher, Camera{}.depth_noise, false);
+  EXPECT_TRUE(evidence.solid_at({0.25, 2, 0.25}));
+  EXPECT_FALSE(evidence.solid_at({0.25, 2, 1.75}));
+  const Eigen::Vector2d between = frame.coordinates({0.05, 2, 1.0});
+  EXPECT_TRUE(evidence.open(cell_at(between.x(), between.y(), PlaneEvidence::cell_m)));
+  evidence.integrate(board, view(world, higher), higher, Camera{}.depth_noise, true);
+  EXPECT_TRUE(evidence.solid_at({0.25, 2, 1.75})) << "unless a keyframe found them to be one";
+}
+
 TEST_F(PlaneEvidenceTest, ADoorThatStoodOpenAndIsShutIsAsItWasSeenMoreOften) {
   PlaneEvidence evidence(frame_of(board, up));
   World open;

@@ -114,6 +114,15 @@ TEST(Structure, WhereTheCellsOfALintelBeginChangesNothing) {
   }
 }
 
+TEST(Structure, AThinPostInADoorwayLeavesItOneDoor) {
+  TestBuilding b = test::two_rooms();
+  b.boxes = {{{4.56, 2.35}, {0.03, 0.03}, 0, 2.05}};
+  const FoundStructure found = test::recognise(test::walk_two_rooms(b));
+  EXPECT_EQ(found.rooms.size(), 2u);
+  ASSERT_EQ(found.doors.size(), 1u);
+  EXPECT_NEAR((found.doors[0].position.head<2>() - Eigen::Vector2d(4.56, 2.2)).norm(), 0, 0.1);
+}
+
 TEST(Structure, DoorLeafOpenOrHalfOpenChangesNothing) {
   for (const double degrees : {90.0, 50.0}) {
     TestBuilding b = test::two_rooms();

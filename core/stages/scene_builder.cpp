@@ -126,7 +126,11 @@ void SceneBuilder::gather_evidence(KeyframeId keyframe, const Map& map) {
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
     auto [at, fresh] = evidence_.try_emplace(id, frame_of(plane.plane, map.up_in_world()));
     if (again && !fresh) return;
-    at->second.integrate(plane.plane, *seen.surface, seen.world_from_camera, camera_.depth_noise);
+    const bool observes_it =
+        std::any_of(plane.observations.begin(), plane.observations.end(),
+                    [keyframe](const PlaneObservation& o) { return o.keyframe == keyframe; });
+    at->second.integrate(plane.plane, *seen.surface, seen.world_from_camera, camera_.depth_noise,
+                         observes_it);
   });
 }
 

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import InputError
-from vsgraphs.markers.poses import SMALLEST_SIDE_PX, Metres, SquarePose, decide, two_poses
+from vsgraphs.lens import depth_metres, undistort
+from vsgraphs.markers.poses import SMALLEST_SIDE_PX, SquarePose, decide, two_poses
 from vsgraphs.markers.registry import MarkerRegistry
+from vsgraphs.markers.square import Metres
 from vsgraphs.trajectory import Array
 
 
@@ -46,10 +48,6 @@ class MarkerDetector:
         parameters.cornerRefinementMethod = aruco.CORNER_REFINE_SUBPIX
         dictionary = getattr(aruco, f"DICT_{registry.dictionary.upper()}")
         self._detector = aruco.ArucoDetector(aruco.getPredefinedDictionary(dictionary), parameters)
-        self._matrix = np.array(
-            [[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]], dtype=np.float64
-        )
-        self._distortion = np.array(camera.distortion, dtype=np.float64)
 
     def __call__(self, rgb: Array, depth: Array) -> Detections:
         """rgb: (h, w, 3) or (h, w) uint8; depth: (h, w) uint16 raw or float32 metres, of the same size."""
@@ -94,21 +92,14 @@ class MarkerDetector:
 
     def _ideal(self, corners: Array) -> Array:
         """(4, 2) pixels as a lens without distortion would show them."""
-        if not self._distortion.any():
-            return corners
-        lens = self._matrix, self._distortion
-        ideal = self._cv2.undistortPoints(corners.reshape(-1, 1, 2), *lens, P=self._matrix)
-        return np.asarray(ideal, dtype=np.float64).reshape(-1, 2)
+        camera = self._camera
+        x, y = undistort(camera, corners[:, 0], corners[:, 1])
+        return np.column_stack([camera.fx * x + camera.cx, camera.fy * y + camera.cy])
 
     def _metres(self, depth: Array) -> Metres:
         """NaN where there is no reading."""
-        camera = self._camera
-        metres = depth.astype(np.float32)
-        if depth.dtype == np.uint16:
-            metres = metres / np.float32(camera.depth_scale)
-            metres[np.isin(depth, camera.invalid_depth)] = np.nan
-        with np.errstate(invalid="ignore"):
-            metres[~((metres >= camera.depth_min_m) & (metres <= camera.depth_max_m))] = np.nan
+        metres = depth_metres(depth, self._camera)
+        metres[~((metres >= self._camera.depth_min_m) & (metres <= self._camera.depth_max_m))] = np.nan
         return metres
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import statistics
-import threading
 import time
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from vsgraphs.keyframe_queue import KeyframeQueue
 from vsgraphs.markers.detector import Detections
 from vsgraphs.trajectory import Array
 
@@ -43,33 +43,23 @@ class KeyframeMarkers:
         beside: bool = True,
         waiting: int = WAITING,
     ) -> None:
-        if waiting < 1:
-            raise ValueError("waiting must be at least 1")
-        self._slam, self._detector, self._most = slam, detector, waiting
+        self._slam, self._detector = slam, detector
         self.warnings: list[str] = []
         self.spans: list[tuple[int, int, int]] = []  # begin us (monotonic clock), duration us, frame
         self._counts: Counter[str] = Counter()
         self._unsure: Counter[int] = Counter()
         self._placed: Counter[int] = Counter()
         self._scales: dict[int, list[float]] = {}
-        self._queue: deque[_Keyframe] = deque()
-        self._changed = threading.Condition()  # guards the queue and the two below
-        self._busy = self._stopping = False
-        self._failure: Exception | None = None
-        self._thread = threading.Thread(target=self._work, name="markers", daemon=True) if beside else None
-        if self._thread is not None:
-            self._thread.start()
+        self._beside = beside
+        self._queue = KeyframeQueue(self._try, "markers", beside=beside, waiting=waiting)
 
     def track(self, rgb: Array, depth: Array, timestamp: float) -> Any:
         """`slam.track`; a keyframe's images are copied and searched. Raises what `slam.track` raises."""
         self._raise_failure()
         result = self._slam.track(rgb, depth, timestamp)
         if result.is_keyframe:
-            if self._thread is None:
-                self._try(_Keyframe(result.index, rgb, depth))
-                self._raise_failure()
-            else:
-                self._enqueue(_Keyframe(result.index, rgb.copy(), depth.copy()))
+            images = (rgb.copy(), depth.copy()) if self._beside else (rgb, depth)
+            self._queue.put(_Keyframe(result.index, *images))
         return result
 
     def add_segmentation(self, *args: Any) -> None:
@@ -78,53 +68,21 @@ class KeyframeMarkers:
 
     def finish(self, limit_s: float = 10.0) -> None:
         """Searches what waits, for at most `limit_s`, and drops the rest; call it before `slam.finish`."""
-        thread, self._thread = self._thread, None
-        if thread is not None:
-            with self._changed:
-                self._changed.wait_for(lambda: not (self._queue or self._busy) or self._failure, limit_s)
-                self._counts["dropped"] += len(self._queue)
-                self._queue.clear()
-                self._stopping = True
-                self._changed.notify_all()
-            thread.join()
+        self._queue.finish(limit_s)
         self._note()
         self._raise_failure()
 
     def report(self) -> dict[str, Any]:
         """Counts of keyframes and sights, and the median time of a search; complete after `finish`."""
-        counts = {key: self._counts[key] for key in ("searched", "dropped", "sights", "unsure")}
+        counts = {key: self._counts[key] for key in ("searched", "sights", "unsure")}
         times = [duration for _, duration, _ in self.spans]
-        return {**counts, "median_ms": statistics.median(times) / 1e3 if times else None}
-
-    def _enqueue(self, keyframe: _Keyframe) -> None:
-        with self._changed:
-            self._queue.append(keyframe)
-            if len(self._queue) > self._most:
-                self._queue.popleft()
-                self._counts["dropped"] += 1
-            self._changed.notify_all()
-
-    def _work(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._queue or self._stopping)
-                if not self._queue:
-                    return
-                keyframe = self._queue.popleft()
-                self._busy = True
-            self._try(keyframe)
-            with self._changed:
-                self._busy = False
-                self._changed.notify_all()
-                if self._failure is not None:
-                    return
+        return {**counts, "dropped": self._queue.dropped, "median_ms": statistics.median(times) / 1e3 if times else None}
 
     def _try(self, keyframe: _Keyframe) -> None:
         try:
             self._search(keyframe)
-        except Exception as error:  # told on the caller's thread, never as a refused frame
-            self._failure = RuntimeError(f"markers: {error}")
-            self._failure.__cause__ = error
+        except Exception as error:  # never to be taken for a frame that is refused
+            raise RuntimeError(f"markers: {error}") from error
 
     def _search(self, keyframe: _Keyframe) -> None:
         began = time.monotonic()
@@ -142,15 +100,12 @@ class KeyframeMarkers:
             self._slam.add_markers(keyframe.frame_index, *arrays)
 
     def _raise_failure(self) -> None:
-        if self._failure is not None:
-            failure, self._failure = self._failure, None
+        if (failure := self._queue.take_failure()) is not None:
             raise failure
 
     def _note(self) -> None:
-        if self._counts["dropped"]:
-            self.warnings.append(
-                f"markers: {self._counts['dropped']} keyframes were not searched, they came too fast"
-            )
+        if dropped := self._queue.dropped:
+            self.warnings.append(f"markers: {dropped} keyframes were not searched, they came too fast")
         for number, scales in sorted(self._scales.items()):
             if len(scales) > self._placed[number]:
                 self.warnings.append(

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import FrameError
+from vsgraphs.keyframe_queue import KeyframeQueue
 from vsgraphs.segment.segmentation import (
     RecordedSegmentations,
     Rgb,
@@ -59,8 +60,6 @@ class KeyframeSegmentation:
         waiting: int = WAITING,
         tell: Callable[[str], None] = lambda _: None,
     ) -> None:
-        if waiting < 1:
-            raise ValueError("waiting must be at least 1")
         self._slam = slam
         self._segmenter = segmenter
         self._tell = tell
@@ -70,19 +69,11 @@ class KeyframeSegmentation:
         self._counts: Counter[str] = Counter()
         self._untold: deque[str] = deque()
         self._frames = 0
-        self._broken = False
-        self._left_behind = False
-        self._refusal: Exception | None = None  # of the core, on the thread
-        self._newest_last: deque[_Keyframe] = deque()
-        self._most = waiting
-        self._changed = threading.Condition()  # guards what both threads touch: all above but slam, segmenter
-        self._busy = False
-        self._stopping = False
-        self._thread = (
-            threading.Thread(target=self._work, name="segmentation", daemon=True) if beside else None
+        self._broken = self._ended = False
+        self._lock = threading.Lock()  # guards spans, counts and untold
+        self._queue = KeyframeQueue(
+            self._work, "segmentation", beside=beside, waiting=waiting, newest_first=True
         )
-        if self._thread is not None:
-            self._thread.start()
 
     def __enter__(self) -> KeyframeSegmentation:
         return self
@@ -102,18 +93,17 @@ class KeyframeSegmentation:
         if result.is_keyframe:
             image = np.repeat(rgb[:, :, None], 3, axis=2) if rgb.ndim == 2 else rgb.copy()
             keyframe = _Keyframe(index, image, timestamp)
-            if self._thread is None:
-                self._segment(keyframe)
+            if self._broken:
+                self._count("failed")
             else:
-                self._enqueue(keyframe)
+                self._queue.put(keyframe)
         self._pass_on()
         return result
 
     @property
     def waiting(self) -> int:
         """Keyframes that wait or are being segmented."""
-        with self._changed:
-            return len(self._newest_last) + self._busy
+        return self._queue.waiting
 
     def finish(self, limit_s: float = DRAIN_LIMIT_S) -> None:
         """Segments what waits, for at most `limit_s`, and drops the rest; call it before `slam.finish`.
@@ -121,68 +111,39 @@ class KeyframeSegmentation:
         A call of the segmenter that is under way is waited for as long again, at least 1 s, then left
         behind: its result is no longer handed over. Raises RuntimeError if the core refused a result.
         """
-        if self._thread is not None:
-            thread, self._thread = self._thread, None
-            self._drain(thread, limit_s)
-            dropped = self._counts["dropped"]
-            if dropped:
-                self._warn(f"segmentation: {dropped} keyframes dropped, {self.name} is slower than they come")
+        self._queue.finish(limit_s, patience_s=max(limit_s, 1.0))
+        if not self._ended:
+            self._ended = True
+            self._warn_of_losses()
         self._pass_on()
-        if self._refusal is not None:
-            raise self._refusal
+        if (refusal := self._queue.take_failure()) is not None:
+            raise refusal
 
     def report(self) -> dict[str, Any]:
         """Counts of keyframes and the median time of a segmentation; complete after `finish`."""
-        with self._changed:
-            counts = {key: self._counts[key] for key in ("segmented", "dropped", "failed", "missing")}
+        with self._lock:
+            counts = {key: self._counts[key] for key in ("segmented", "failed", "missing")}
+            counts["dropped"] = self._queue.dropped
             times = [duration for _, duration, _ in self.spans]
             return {**counts, "median_ms": statistics.median(times) / 1e3 if times else None}
 
-    def _drain(self, thread: threading.Thread, limit_s: float) -> None:
-        with self._changed:
-            self._changed.wait_for(lambda: not self._newest_last and not self._busy, limit_s)
-            self._counts["dropped"] += len(self._newest_last)
-            self._newest_last.clear()
-            self._stopping = True
-            self._changed.notify_all()
-        thread.join(max(limit_s, 1.0))
-        with self._changed:
-            self._left_behind = self._busy
-            self._counts["dropped"] += self._left_behind
-        if self._left_behind:
+    def _warn_of_losses(self) -> None:
+        if self._queue.left_behind:
             self._warn(f"segmentation: {self.name} did not come back from its last call, left behind")
+        if dropped := self._queue.dropped:
+            self._warn(f"segmentation: {dropped} keyframes dropped, {self.name} is slower than they come")
 
-    def _enqueue(self, keyframe: _Keyframe) -> None:
-        with self._changed:
-            if self._broken:
-                self._counts["failed"] += 1
-                return
-            self._newest_last.append(keyframe)
-            if len(self._newest_last) > self._most:
-                self._newest_last.popleft()
-                self._counts["dropped"] += 1
-            self._changed.notify_all()
-
-    def _work(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._newest_last or self._stopping)
-                if not self._newest_last:
-                    return
-                keyframe = self._newest_last.pop()
-                self._busy = True
-            try:
-                self._segment(keyframe)
-            except Exception as error:
-                self._refusal, self._broken = error, True
-            with self._changed:
-                self._busy = False
-                self._changed.notify_all()
+    def _work(self, keyframe: _Keyframe) -> None:
+        try:
+            self._segment(keyframe)
+        except Exception:  # the core's refusal
+            self._broken = True
+            self._count("failed", self._queue.discard())
+            raise
 
     def _segment(self, keyframe: _Keyframe) -> None:
         if self._broken:
-            with self._changed:
-                self._counts["failed"] += 1
+            self._count("failed")
             return
         began = time.monotonic()
         try:
@@ -194,13 +155,13 @@ class KeyframeSegmentation:
             self._give_up(error)
             return
         ended = time.monotonic()
-        with self._changed:
-            if self._left_behind:
-                return
-            if found is None:
-                self._counts["missing"] += 1
-                return
-            self._counts["segmented"] += 1
+        if self._queue.left_behind:
+            return
+        if found is None:
+            self._count("missing")
+            return
+        self._count("segmented")
+        with self._lock:
             self.spans.append((int(began * 1e6), int((ended - began) * 1e6), keyframe.frame_index))
         self._hand_over(keyframe.frame_index, found)
 
@@ -222,7 +183,7 @@ class KeyframeSegmentation:
             ) from error
 
     def _note_frame(self, line: str) -> None:
-        with self._changed:
+        with self._lock:
             self._counts["failed"] += 1
             if self._counts["failed"] <= _NAMED_FRAMES:
                 self._untold.append(f"segmentation: {line}")
@@ -230,14 +191,17 @@ class KeyframeSegmentation:
     def _give_up(self, error: Exception) -> None:
         text = " ".join(str(error).split()) or "no message"
         reason = text if self.name in text else f"{self.name}: {type(error).__name__}: {text}"
-        with self._changed:
-            self._broken = True
-            self._counts["failed"] += 1 + len(self._newest_last)
-            self._newest_last.clear()
+        self._broken = True
+        self._count("failed", 1 + self._queue.discard())
+        with self._lock:
             self._untold.append(f"segmentation failed, geometry alone from here on: {reason}")
 
+    def _count(self, what: str, number: int = 1) -> None:
+        with self._lock:
+            self._counts[what] += number
+
     def _warn(self, line: str) -> None:
-        with self._changed:
+        with self._lock:
             self._untold.append(line)
         self._pass_on()
 

@@ -6,43 +6,17 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.datasets import Calibration
+from vsgraphs.lens import distort, undistort
 from vsgraphs.trajectory import Array
 
 NEAR_M = 0.1
 _AGREES_M, _AGREES_SHARE = 0.05, 0.02  # how far a landmark may lie from the depth at its pixel
 
 
-def depth_metres(depth: npt.NDArray[np.generic], camera: Calibration) -> npt.NDArray[np.float32]:
-    """Depth image in metres, 0 where there is none; uint16 in the camera's units or float32 metres."""
-    if depth.dtype != np.uint16:
-        return np.nan_to_num(depth.astype(np.float32), posinf=0.0, neginf=0.0)
-    out = depth.astype(np.float32) / np.float32(camera.depth_scale)
-    for value in camera.invalid_depth:
-        out[depth == value] = 0.0
-    return out
-
-
-def distort(camera: Calibration, x: Array, y: Array) -> tuple[Array, Array]:
-    """Normalised image coordinates (x/z, y/z) -> pixels, with the lens (Brown and Conrady's model)."""
-    k1, k2, p1, p2, k3 = camera.distortion
-    r2 = x * x + y * y
-    radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
-    xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
-    yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
-    return camera.fx * xd + camera.cx, camera.fy * yd + camera.cy
-
-
 def pixel_rays(camera: Calibration, stride: int) -> Array:
     """(h, w, 2) normalised image coordinates of every stride-th pixel, the lens taken out by fixed point."""
     u, v = np.meshgrid(np.arange(0, camera.width, stride), np.arange(0, camera.height, stride))
-    x0 = ((u - camera.cx) / camera.fx).astype(np.float64)
-    y0 = ((v - camera.cy) / camera.fy).astype(np.float64)
-    x, y = x0.copy(), y0.copy()
-    if any(camera.distortion):
-        for _ in range(8):
-            xd, yd = distort(camera, x, y)
-            x, y = x + x0 - (xd - camera.cx) / camera.fx, y + y0 - (yd - camera.cy) / camera.fy
-    return np.stack([x, y], axis=-1)
+    return np.stack(undistort(camera, u, v), axis=-1)
 
 
 def back_project(
