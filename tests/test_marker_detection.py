@@ -193,7 +193,9 @@ def noisy_corners_and_depth(truth: Array, random: Any) -> tuple[Array, Array]:
     seen_by, points = camera(), corners_of(SIZE_M) @ truth[:3, :3].T + truth[:3, 3]
     corners = points[:, :2] / points[:, 2:] * FOCAL + [seen_by.cx, seen_by.cy]
     v, u = np.mgrid[0:HEIGHT, 0:WIDTH]
-    slant = np.stack([(u - seen_by.cx) / FOCAL, (v - seen_by.cy) / FOCAL, np.ones(u.shape)], -1) @ truth[:3, 2]
+    slant = (
+        np.stack([(u - seen_by.cx) / FOCAL, (v - seen_by.cy) / FOCAL, np.ones(u.shape)], -1) @ truth[:3, 2]
+    )
     depth = (truth[:3, 2] @ truth[:3, 3]) / slant
     offset, scale, onset = seen_by.depth_noise
     # As noisy as few independent readings; and what they all have in common.

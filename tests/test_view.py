@@ -19,8 +19,8 @@ from scene_worlds import building, camera_poses, perfect_map
 from vsgraphs.cli.viewing import RunView, Showing, view_run
 from vsgraphs.datasets import Calibration
 from vsgraphs.errors import InputError
-from vsgraphs.scene_graph import SceneGraph, format_scene_graph
 from vsgraphs.lens import depth_metres, distort
+from vsgraphs.scene_graph import SceneGraph, format_scene_graph
 from vsgraphs.view import ports, sinks
 from vsgraphs.view.camera import back_project, landmarks_in_view, pixel_rays
 from vsgraphs.view.layers import MAX_LINKED_KEYFRAMES, layered_graph, wall_heading

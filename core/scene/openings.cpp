@@ -87,7 +87,8 @@ std::vector<WallOpening> openings_along(const LevelMap& map, const WallLine& wal
   const auto close_run = [&] {
     // Runs that touch the end of the stretch looked at are wider than they seem.
     if (run && run->first > first && run->second + step <= last)
-      if (const auto opening = opening_between(wall, run->first - 0.5 * step, run->second + 0.5 * step, options))
+      if (const auto opening =
+              opening_between(wall, run->first - 0.5 * step, run->second + 0.5 * step, options))
         openings.push_back(*opening);
     run.reset();
   };

@@ -57,7 +57,8 @@ class PlaneEvidence {
  private:
   static constexpr int min_on = 2, min_through = 2;
   static constexpr double margin_m = 1.0;
-  static constexpr double own_margin_m = 0.3;  // a keyframe that does not observe the plane adds surface up to here
+  static constexpr double own_margin_m =
+      0.3;  // a keyframe that does not observe the plane adds surface up to here
 
   PlaneFrame frame_;
   CellGrid<CellEvidence> cells_;

@@ -76,7 +76,11 @@ class KeyframeMarkers:
         """Counts of keyframes and sights, and the median time of a search; complete after `finish`."""
         counts = {key: self._counts[key] for key in ("searched", "sights", "unsure")}
         times = [duration for _, duration, _ in self.spans]
-        return {**counts, "dropped": self._queue.dropped, "median_ms": statistics.median(times) / 1e3 if times else None}
+        return {
+            **counts,
+            "dropped": self._queue.dropped,
+            "median_ms": statistics.median(times) / 1e3 if times else None,
+        }
 
     def _try(self, keyframe: _Keyframe) -> None:
         try:

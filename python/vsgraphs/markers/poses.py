@@ -71,7 +71,8 @@ def decide(
         return None
     depths = [DepthReadings.at(pose, size_m, metres, camera) for pose in facing]
     misfits = [
-        pixel_misfit(pose, corners, size_m, camera) + (0.0 if readings is None else readings.tilt_misfit(pose))
+        pixel_misfit(pose, corners, size_m, camera)
+        + (0.0 if readings is None else readings.tilt_misfit(pose))
         for pose, readings in zip(facing, depths, strict=True)
     ]
     best = int(np.argmin(misfits))

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from vsgraphs.datasets import Calibration
 from vsgraphs.export.class_colours import plane_of_points
+from vsgraphs.lens import depth_metres
 from vsgraphs.scene_graph import CLASS_COLOURS, NO_PLANE, ROLES, SceneGraph, transform_points
 from vsgraphs.trajectory import Array
-from vsgraphs.lens import depth_metres
 from vsgraphs.view.camera import back_project, landmarks_in_view, pixel_rays
 from vsgraphs.view.extra import rerun
 from vsgraphs.view.sinks import Sinks
