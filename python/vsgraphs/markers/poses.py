@@ -1,8 +1,8 @@
 """Which of a square's two poses it is, and how exactly it is known.
 
 A square seen from afar looks the same tilted to either side. Its corners in the image tell the two apart only
-near by; a depth image does so as far away as its noise is smaller than the square's tilt. Depth then says how far
-away it is, too: of a distance, corners know little more than half a pixel in the square's side.
+near by; a depth image does so as far away as its noise is smaller than the square's tilt. Depth then says how
+far away it is, too: half a pixel in the side of a small square is centimetres of distance.
 """
 
 from __future__ import annotations

@@ -35,8 +35,8 @@ def corners_of(size_m: float) -> Array:
 class DepthReadings:
     """Depth of the paper: rays (N, 3) with z = 1, metres (N,) along z.
 
-    What is wrong with one of them is that pixel's noise; what all have in common is also the offset between the
-    depth and the colour image, or the size the print was said to have.
+    What is wrong with one of them is that pixel's noise; what all have in common is also the offset between
+    the depth and the colour image, or the size the print was said to have.
     """
 
     rays: Array
