@@ -13,10 +13,10 @@ Item = TypeVar("Item")
 class KeyframeQueue(Generic[Item]):
     """Calls `work` with each item put in, on a thread called `name`; beside=False: within `put`.
 
-    When more than `waiting` items wait, the oldest is dropped. newest_first: which of them is next. What `work`
-    raises ends the work: on the thread it is kept for `take_failure`, within `put` it is raised there.
-    All methods belong to the caller's thread, except `discard`, `waiting` and `left_behind`, which `work` may
-    use too. Raises ValueError where `waiting` is less than 1.
+    When more than `waiting` items wait, the oldest is dropped. newest_first: which of them is next. What
+    `work` raises ends the work: on the thread it is kept for `take_failure`, within `put` it is raised there.
+    All methods belong to the caller's thread, except `discard`, `waiting` and `left_behind`, which `work`
+    may use too. Raises ValueError where `waiting` is less than 1.
     """
 
     def __init__(

@@ -1,9 +1,11 @@
-"""Where a camera's lens shows a point, and what its depth readings mean. Plain arrays, without the compiled module."""
+"""Where a camera's lens shows a point, and what its depth readings mean, without the compiled module.
+
+camera: a `Calibration` or a `vsgraphs.Camera`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,31 +13,7 @@ import numpy.typing as npt
 from vsgraphs.trajectory import Array
 
 
-class Lens(Protocol):
-    """What is needed of a `vsgraphs.Camera` or a `Calibration`."""
-
-    @property
-    def fx(self) -> float: ...
-    @property
-    def fy(self) -> float: ...
-    @property
-    def cx(self) -> float: ...
-    @property
-    def cy(self) -> float: ...
-    @property
-    def distortion(self) -> Sequence[float]: ...
-
-
-class DepthSensor(Protocol):
-    """What is needed of the same for depth."""
-
-    @property
-    def depth_scale(self) -> float: ...
-    @property
-    def invalid_depth(self) -> Sequence[int]: ...
-
-
-def depth_metres(depth: npt.NDArray[np.generic], camera: DepthSensor) -> npt.NDArray[np.float32]:
+def depth_metres(depth: npt.NDArray[np.generic], camera: Any) -> npt.NDArray[np.float32]:
     """Depth image in metres, 0 where there is none; uint16 in the camera's units or float32 metres."""
     if depth.dtype != np.uint16:
         return np.nan_to_num(depth.astype(np.float32), posinf=0.0, neginf=0.0)
@@ -45,7 +23,7 @@ def depth_metres(depth: npt.NDArray[np.generic], camera: DepthSensor) -> npt.NDA
     return out
 
 
-def distort(camera: Lens, x: Array, y: Array) -> tuple[Array, Array]:
+def distort(camera: Any, x: Array, y: Array) -> tuple[Array, Array]:
     """Normalised image coordinates (x/z, y/z) -> pixels, with the lens (Brown and Conrady's model)."""
     k1, k2, p1, p2, k3 = camera.distortion
     r2 = x * x + y * y
@@ -55,7 +33,7 @@ def distort(camera: Lens, x: Array, y: Array) -> tuple[Array, Array]:
     return camera.fx * xd + camera.cx, camera.fy * yd + camera.cy
 
 
-def undistort(camera: Lens, u: npt.NDArray[Any], v: npt.NDArray[Any]) -> tuple[Array, Array]:
+def undistort(camera: Any, u: npt.NDArray[Any], v: npt.NDArray[Any]) -> tuple[Array, Array]:
     """Pixels -> normalised image coordinates, the lens taken out by fixed point."""
     x0 = ((u - camera.cx) / camera.fx).astype(np.float64)
     y0 = ((v - camera.cy) / camera.fy).astype(np.float64)

@@ -24,8 +24,8 @@ def score_rooms(
 ) -> Detection:
     """By intersection over union of the polygons seen from above, the greatest first, each matched once.
 
-    A room that lies mostly in one that is not scored, at any height between its floor and ceiling, is ignored,
-    however little of that one it covers.
+    A room that lies mostly in one that is not scored, at any height between its floor and ceiling, is
+    ignored, however little of that one it covers.
     """
     required = [room for room in truth.rooms if room.required]
     if "rooms" not in graph.estimated:
@@ -41,9 +41,11 @@ def score_rooms(
             near = abs(above) <= options.storey_m
             if room.required and near:
                 pairs.append((intersection_over_union(raster, true_rasters[room.id]), number, room))
-            elif not room.required and (near or 0 < above < room.height_m):  # landings of a stairwell
-                if common_cells(raster, true_rasters[room.id]) > 0.5 * raster.cells:
-                    ignored.add(number)
+                continue
+            within = near or 0 < above < room.height_m  # a landing of a stairwell
+            if not room.required and within:
+                common = common_cells(raster, true_rasters[room.id])
+                ignored |= {number} if common > 0.5 * raster.cells else set()
     score = Detection(true=len(required), error_names=_ROOM_ERRORS)
     near = [pair for pair in pairs if pair[0] >= options.room_iou]
     for iou, number, room in _once(near, lambda pair: (-pair[0], pair[1])):
