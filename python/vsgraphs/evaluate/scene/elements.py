@@ -38,11 +38,11 @@ def score_rooms(
         z = float(rooms[number][:, 2].mean())
         for room in truth.rooms:
             above = z - room.z_floor
-            near = abs(above) <= options.storey_m
-            if room.required and near:
+            same_storey = abs(above) <= options.storey_m
+            if room.required and same_storey:
                 pairs.append((intersection_over_union(raster, true_rasters[room.id]), number, room))
                 continue
-            within = near or 0 < above < room.height_m  # a landing of a stairwell
+            within = same_storey or 0 < above < room.height_m  # a landing of a stairwell
             if not room.required and within:
                 common = common_cells(raster, true_rasters[room.id])
                 ignored |= {number} if common > 0.5 * raster.cells else set()
