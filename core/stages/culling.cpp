@@ -1,6 +1,7 @@
 #include "core/stages/culling.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace vsgraphs {
 
@@ -44,7 +45,8 @@ bool well_witnessed(const CullingOptions& options, const Map& map, const Landmar
   return false;
 }
 
-bool redundant(const CullingOptions& options, const Map& map, KeyframeId id) {
+// Of its landmarks with depth; empty if it has none.
+std::optional<double> witnessed_share(const CullingOptions& options, const Map& map, KeyframeId id) {
   const Keyframe& keyframe = *map.keyframes().find(id);
   int seen = 0, shared = 0;
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
@@ -54,7 +56,58 @@ bool redundant(const CullingOptions& options, const Map& map, KeyframeId id) {
     ++seen;
     shared += well_witnessed(options, map, *landmark, id, feature.level);
   }
-  return seen > 0 && shared > options.redundant_share * seen;
+  if (seen == 0) return std::nullopt;
+  return static_cast<double>(shared) / seen;
+}
+
+// The oldest keyframe that stands where this one does, made long before it.
+KeyframeId made_here_before(const CullingOptions& options, const Map& map, KeyframeId id) {
+  const Se3 camera_from_world = map.keyframes().find(id)->world_from_camera.inverse();
+  const auto gap = static_cast<std::uint32_t>(options.revisit_gap_keyframes);
+  for (std::uint32_t index = 0; index + gap <= id.index; ++index) {
+    const KeyframeId other = map.keyframes().at_index(index);
+    if (!other.valid()) continue;
+    const Se3 step = camera_from_world * map.keyframes().find(other)->world_from_camera;
+    if (step.translation().norm() < options.revisit_m &&
+        rotation_angle(step.rotation()) < options.revisit_rad)
+      return other;
+  }
+  return {};
+}
+
+// What a keyframe that is about to go saw of planes that enough living ones see; its patches, if that was all.
+void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft) {
+  std::vector<std::pair<PlaneId, PlaneObservation>> forgotten;
+  bool all = true;
+  draft.map().planes().for_each([&](PlaneId plane_id, const MappedPlane& plane) {
+    int others = 0;
+    std::vector<PlaneObservation> own;
+    for (const PlaneObservation& o : plane.observations) {
+      if (o.keyframe == id) {
+        own.push_back(o);
+      } else {
+        others += draft.map().keyframes().contains(o.keyframe);
+      }
+    }
+    if (own.empty()) return;
+    if (others < options.redundant_witnesses) {
+      all = false;
+      return;
+    }
+    for (const PlaneObservation& o : own) forgotten.emplace_back(plane_id, o);
+  });
+  if (all && draft.map().keyframes().find(id)->patches) {
+    draft.record(SetPatches{id, nullptr});
+    return;
+  }
+  for (const auto& [plane, observation] : forgotten) draft.record(RemovePlaneObservation{plane, observation});
+}
+
+// Where frames and links that hang on a keyframe go when it does; invalid if there is nowhere.
+KeyframeId successor(const Map& map, KeyframeId id, KeyframeId made_before) {
+  const auto neighbours = map.covisible(id, 1);
+  if (!neighbours.empty()) return neighbours.front().first;
+  return made_before;
 }
 
 }  // namespace
@@ -66,9 +119,18 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
   for (const KeyframeId id : candidates) {
     const Map& map = draft.map();
     const Keyframe* keyframe = map.keyframes().find(id);
-    if (!keyframe || id == first || keyframe->tracked_link || !redundant(options, map, id)) continue;
-    const auto neighbours = map.covisible(id, 1);
-    if (!neighbours.empty()) draft.record(RemoveKeyframe{id, neighbours.front().first});
+    if (!keyframe || id == first) continue;
+    const auto share = witnessed_share(options, map, id);
+    // Where landmarks are few the keyframe is there for its surfaces, and those were only seen before at a place made before.
+    const bool by_landmarks = share && *share > options.redundant_share && !keyframe->tracked_link;
+    const bool may_be_revisit = share.value_or(1.0) >= options.revisit_share;
+    if (!by_landmarks && !may_be_revisit) continue;
+    const KeyframeId before = may_be_revisit ? made_here_before(options, map, id) : KeyframeId{};
+    if (!by_landmarks && !before.valid()) continue;
+    const KeyframeId anchor = successor(map, id, before);
+    if (!anchor.valid()) continue;
+    if (before.valid()) forget_surfaces(options, id, draft);
+    draft.record(RemoveKeyframe{id, anchor});
   }
 }
 
