@@ -44,11 +44,6 @@ class Map {
 
   // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
   std::optional<Se3> resolve(const AnchoredPose& pose) const;
-  // What is left of a culled keyframe; nullptr if it lives or never existed.
-  const RetiredKeyframe* retired(KeyframeId id) const {
-    const RetiredKeyframe* found = retired_.find(id);
-    return found && found->anchor.valid() ? found : nullptr;
-  }
   // The living keyframe that stands for `pose`'s anchor now, and the pose relative to it.
   std::optional<AnchoredPose> reanchor(AnchoredPose pose) const;
 

@@ -1,7 +1,6 @@
 #include "core/stages/culling.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace vsgraphs {
 
@@ -30,34 +29,53 @@ void Probation::judge(const CullingOptions& options, std::int64_t keyframe_count
 
 namespace {
 
-// Others that see the landmark at the same or a finer scale.
-bool well_witnessed(const CullingOptions& options, const Map& map, const Landmark& landmark,
-                    KeyframeId keyframe, int level) {
-  int witnesses = 0;
+// Who sees a landmark at the same or a finer scale.
+struct Witnesses {
+  bool enough = false;
+  bool made_before = false;  // one of them long before the keyframe asked about
+};
+
+Witnesses witnesses_of(const CullingOptions& options, const Map& map, const Landmark& landmark,
+                       KeyframeId keyframe, int level) {
+  const auto gap = static_cast<std::uint32_t>(options.revisit_gap_keyframes);
+  Witnesses result;
+  int count = 0;
   for (const Observation& o : landmark.observations) {
     if (o.keyframe == keyframe) continue;
     const Keyframe* other = map.keyframes().find(o.keyframe);
-    if (other && (*other->features)[o.feature].level <= level + 1 &&
-        ++witnesses >= options.redundant_witnesses) {
-      return true;
-    }
+    if (!other || (*other->features)[o.feature].level > level + 1) continue;
+    result.enough |= ++count >= options.redundant_witnesses;
+    result.made_before |= o.keyframe.index + gap <= keyframe.index;
+    if (result.enough && result.made_before) break;
   }
-  return false;
+  return result;
 }
 
-// Of its landmarks with depth; empty if it has none.
-std::optional<double> witnessed_share(const CullingOptions& options, const Map& map, KeyframeId id) {
+// Shares of a keyframe's landmarks with depth: those that enough others see, and of these those that were seen long before.
+struct WitnessedShares {
+  int landmarks = 0;
+  double witnessed = 0;
+  double known_before = 0;
+};
+
+WitnessedShares witnessed_shares(const CullingOptions& options, const Map& map, KeyframeId id) {
   const Keyframe& keyframe = *map.keyframes().find(id);
-  int seen = 0, shared = 0;
+  WitnessedShares shares;
+  int witnessed = 0, known_before = 0;
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     const Landmark* landmark = map.landmarks().find(keyframe.landmarks[i]);
     const Feature& feature = (*keyframe.features)[static_cast<int>(i)];
     if (!landmark || !feature.has_depth()) continue;
-    ++seen;
-    shared += well_witnessed(options, map, *landmark, id, feature.level);
+    ++shares.landmarks;
+    const Witnesses witnesses = witnesses_of(options, map, *landmark, id, feature.level);
+    witnessed += witnesses.enough;
+    known_before += witnesses.enough && witnesses.made_before;
   }
-  if (seen == 0) return std::nullopt;
-  return static_cast<double>(shared) / seen;
+  if (shares.landmarks > 0) {
+    shares.witnessed = static_cast<double>(witnessed) / shares.landmarks;
+    shares.known_before = static_cast<double>(known_before) / shares.landmarks;
+  }
+  return shares;
 }
 
 // The oldest keyframe that stands where this one does, made long before it.
@@ -107,7 +125,18 @@ void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft)
 KeyframeId successor(const Map& map, KeyframeId id, KeyframeId made_before) {
   const auto neighbours = map.covisible(id, 1);
   if (!neighbours.empty()) return neighbours.front().first;
+  // Tracking measured this step; that the camera came back is only what the map makes of all steps since.
+  if (const auto& link = map.keyframes().find(id)->tracked_link) {
+    const auto living = map.reanchor({link->to, Se3{}});
+    if (living && living->keyframe != id) return living->keyframe;
+  }
   return made_before;
+}
+
+bool may_be_revisit(const CullingOptions& options, const Keyframe& keyframe, const WitnessedShares& shares) {
+  // Held by surfaces alone: they were seen before wherever the camera stood before.
+  if (shares.landmarks == 0) return keyframe.tracked_link.has_value();
+  return shares.known_before >= options.revisit_share;
 }
 
 }  // namespace
@@ -120,13 +149,11 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
     const Map& map = draft.map();
     const Keyframe* keyframe = map.keyframes().find(id);
     if (!keyframe || id == first) continue;
-    const auto share = witnessed_share(options, map, id);
-    // Where landmarks are few the keyframe is there for its surfaces, and those were only seen before at a place made before.
-    const bool by_landmarks = share && *share > options.redundant_share && !keyframe->tracked_link;
-    const bool may_be_revisit = share.value_or(1.0) >= options.revisit_share;
-    if (!by_landmarks && !may_be_revisit) continue;
-    const KeyframeId before = may_be_revisit ? made_here_before(options, map, id) : KeyframeId{};
-    if (!by_landmarks && !before.valid()) continue;
+    const WitnessedShares shares = witnessed_shares(options, map, id);
+    const bool redundant = shares.witnessed > options.redundant_share && !keyframe->tracked_link;
+    const KeyframeId before = may_be_revisit(options, *keyframe, shares) ? made_here_before(options, map, id)
+                                                                         : KeyframeId{};
+    if (!redundant && !before.valid()) continue;
     const KeyframeId anchor = successor(map, id, before);
     if (!anchor.valid()) continue;
     if (before.valid()) forget_surfaces(options, id, draft);

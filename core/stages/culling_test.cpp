@@ -254,8 +254,8 @@ TEST_F(RevisitCullingTest, WhatEnoughOthersSeeOfPlanesIsForgotten) {
   const PlaneId plane = add_plane({0, 1, 2, 4});
   const Map after = after_culling(4);
   EXPECT_EQ(after.planes().find(plane)->observations.size(), 3U);
-  ASSERT_NE(after.retired(at(4)), nullptr);
-  EXPECT_EQ(after.retired(at(4))->patches, nullptr);
+  ASSERT_NE(after.retired_keyframes().find(at(4)), nullptr);
+  EXPECT_EQ(after.retired_keyframes().find(at(4))->patches, nullptr);
 }
 
 TEST_F(RevisitCullingTest, WhatFewSeeOfPlanesStays) {
@@ -264,7 +264,7 @@ TEST_F(RevisitCullingTest, WhatFewSeeOfPlanesStays) {
   const Map after = after_culling(4);
   EXPECT_EQ(after.planes().find(common)->observations.size(), 3U);
   EXPECT_EQ(after.planes().find(rare)->observations.size(), 2U);
-  EXPECT_NE(after.retired(at(4))->patches, nullptr);
+  EXPECT_NE(after.retired_keyframes().find(at(4))->patches, nullptr);
 }
 
 }  // namespace
