@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import vsgraphs
+from vsgraphs.cli.settings import apply_assignments
 
 
 def resident_mb() -> float:
@@ -100,8 +101,7 @@ def main() -> None:
     frames = sequence.frames[: options.max_frames]
     config = vsgraphs.Config()
     config.set("system.execution", "serial")
-    for text in options.set:
-        config.set(*text.split("=", 1))
+    apply_assignments(config, options.set)
     walker = Walker(sequence, config)
     print(HEADER)
     rounds: list[Round] = []

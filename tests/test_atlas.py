@@ -20,7 +20,7 @@ import vsgraphs as package
 from vsgraphs.scene_graph import SceneGraph
 from vsgraphs.trajectory import read_tum_trajectory
 
-COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors", "maps")
+COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors", "markers", "maps")
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +79,25 @@ def test_what_python_sees_of_an_atlas(walked: Path) -> None:
     assert len(graph.planes) == atlas.info()["planes"]
     with pytest.raises(IndexError, match="map 1 of 1"):
         atlas.snapshot(1)
+
+
+def test_python_asks_an_atlas_for_places_that_look_alike(walked: Path) -> None:
+    atlas = package.load_atlas(walked / "atlas.vsg")
+    ids, _, poses = atlas.snapshot().keyframes()
+    places = poses[:, :3, 3]
+    last = int(ids[-1])
+    similar = atlas.similar_places(last, gap=1, count=3)
+    scores = [score for _, score in similar]
+    assert 1 <= len(similar) <= 3
+    assert scores == sorted(scores, reverse=True)
+    assert all(0 < score <= 1 for score in scores)
+    # Along a painted wall the nearest looks most alike.
+    nearest = int(ids[np.linalg.norm(places[:-1] - places[-1], axis=1).argmin()])
+    assert similar[0][0] == nearest
+    assert all(number + 2 <= last for number, _ in atlas.similar_places(last, gap=2))
+    assert atlas.similar_places(int(ids[0])) == []
+    with pytest.raises(IndexError, match="keyframe 100000 is not in the map"):
+        atlas.similar_places(100000)
 
 
 def test_the_configuration_of_an_atlas_is_read_by_run(

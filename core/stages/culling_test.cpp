@@ -230,6 +230,15 @@ TEST_F(RevisitCullingTest, AKeyframeMadeByComingBackGoesSooner) {
   EXPECT_THAT(culled({4}), testing::IsEmpty()) << "that was a moment ago";
 }
 
+TEST_F(RevisitCullingTest, WhereOnlyRecentOnesSeeTheSameNobodyCameBack) {
+  observe_all();
+  unobserve(1, 3);  // 17 of 20 have enough witnesses
+  unobserve(0, 4);  // 16 of them one that is old
+  EXPECT_THAT(culled({4}), testing::ElementsAre(4));
+  for (int i = 4; i < 10; ++i) map_.apply(RemoveObservation{landmarks_[static_cast<std::size_t>(i)], at(0)});
+  EXPECT_THAT(culled({4}), testing::IsEmpty());
+}
+
 TEST_F(RevisitCullingTest, OneHeldByATrackedLinkGoesOnlyWhereTheCameraCameBack) {
   Keyframe linked = keyframe_seeing(camera_, standing_at(0.4), points_);
   linked.tracked_link = TrackedLink{at(4), standing_at(0), Matrix6d::Identity()};
@@ -243,6 +252,7 @@ TEST_F(RevisitCullingTest, OneHeldByATrackedLinkGoesOnlyWhereTheCameraCameBack) 
   ASSERT_THAT(culled({5}), testing::ElementsAre(5));
   const Map after = after_culling(5);
   EXPECT_NEAR(after.resolve({at(5), Se3{}})->translation().x(), 0.4, 1e-12);
+  EXPECT_EQ(after.reanchor({at(5), Se3{}})->keyframe, at(4)) << "tracking measured that step";
   const auto link = after.reanchor({at(5), next.tracked_link->to_from_camera});
   ASSERT_TRUE(link) << "the next one's link holds on to a living keyframe";
   EXPECT_TRUE(after.keyframes().contains(link->keyframe));
