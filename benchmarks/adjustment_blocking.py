@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Does the adjustment of the whole map after a loop block tracking? Frames' times while it runs, and otherwise.
+"""Does the adjustment of the whole map after a loop block tracking? Times of frames during it and otherwise.
 
     benchmarks/adjustment_blocking.py DATA/three_rooms --runs 3
     chrt -r 1 benchmarks/adjustment_blocking.py DATA/three_rooms     # where the machine does other work too
 
-Threaded, at the camera's pace (--fps), frames decoded before they are due. A frame's time is that of `track()` with
-every wait; its wait is what of that time the caller's thread did not compute: locks, and other threads on its
-processor. The interpreter is given free while `track()` computes. A frame counts to an adjustment if the two overlap.
+Threaded, at the camera's pace (--fps), frames decoded before they are due. A frame's time is that of
+`track()` with every wait; its wait is what of that time the caller's thread did not compute: locks, and other
+threads on its processor. A frame counts to an adjustment if the two overlap.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import vsgraphs
+from vsgraphs.cli.settings import apply_assignments
 from vsgraphs.datasets import RecordedSequence
 
 Interval = tuple[int, int]
@@ -38,11 +39,14 @@ class FrameTime:
         return any(begin < ended_us and self.began_us < end for begin, end in intervals)
 
 
-def one_run(sequence: RecordedSequence, fps: float) -> tuple[list[FrameTime], list[Interval], int]:
+def one_run(
+    sequence: RecordedSequence, fps: float, settings: list[str]
+) -> tuple[list[FrameTime], list[Interval], int]:
     """Frames but the first, the adjustments of the whole map (us), and how many loops were closed."""
     config = vsgraphs.Config()
     config.set("system.execution", "threaded")
     config.set("system.realtime", True)
+    apply_assignments(config, settings)
     slam = vsgraphs.Slam(config, sequence.camera)
     times = []
     due = time.monotonic()
@@ -78,12 +82,13 @@ def main() -> None:
     parser.add_argument("sequence", type=Path)
     parser.add_argument("--runs", type=int, default=1)
     parser.add_argument("--fps", type=float, help="default: the camera's")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="an option")
     options = parser.parse_args()
     sequence = vsgraphs.open_sequence(options.sequence)
     during: list[FrameTime] = []
     otherwise: list[FrameTime] = []
     for number in range(options.runs):
-        times, adjustments, loops = one_run(sequence, options.fps or sequence.camera.fps)
+        times, adjustments, loops = one_run(sequence, options.fps or sequence.camera.fps, options.set)
         for frame in times:
             (during if frame.overlaps(adjustments) else otherwise).append(frame)
         spans = ", ".join(f"{(end - begin) / 1e3:.0f}" for begin, end in adjustments) or "none"

@@ -6,7 +6,8 @@
 A round is the sequence forwards, then backwards, so that the camera never jumps. Serial execution: a frame
 without keyframe is tracking alone, one with a keyframe all of mapping too (medians of the round, and how many
 keyframes were made); the round is all of its frames. CPU time of the calling thread; memory is what the
-process holds at the end of the round. The last line is the last round's share of the first one's.
+process holds at the end of the round; ATE is that of all frames so far, where the truth is known. The last
+line is the last round's share of the first one's.
 """
 
 from __future__ import annotations
@@ -19,8 +20,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from relocalisation import aligned
+
 import vsgraphs
 from vsgraphs.cli.settings import apply_assignments
+from vsgraphs.trajectory import read_tum_trajectory
 
 
 def resident_mb() -> float:
@@ -39,6 +44,7 @@ class Round:
     landmarks: int = 0
     planes: int = 0
     memory_mb: float = 0.0
+    ate_mm: float | None = None
 
     def total_s(self) -> float:
         """All frames."""
@@ -51,39 +57,58 @@ class Round:
         )
         return (
             f"| {number} | {self.total_s():.2f} | {plain} | {keyframe} | {len(self.keyframe_ms)} "
-            f"| {self.keyframes} | {self.landmarks} | {self.planes} | {self.memory_mb:.0f} |"
+            f"| {self.keyframes} | {self.landmarks} | {self.planes} | {self.memory_mb:.0f} "
+            f"| {'-' if self.ate_mm is None else format(self.ate_mm, '.1f')} |"
         )
 
 
 HEADER = (
     "| round | round, s | without keyframe, ms | with keyframe, ms | made | keyframes | landmarks | planes "
-    "| memory, MB |\n|---|---|---|---|---|---|---|---|---|"
+    "| memory, MB | ATE, mm |\n|---|---|---|---|---|---|---|---|---|---|"
 )
 
 
 class Walker:
     """A camera that goes on and on."""
 
-    def __init__(self, sequence: Any, config: vsgraphs.Config) -> None:
+    def __init__(self, sequence: Any, config: vsgraphs.Config, truth: Any) -> None:
         self.slam = vsgraphs.Slam(config, sequence.camera)
         self.step_s = 1.0 / sequence.camera.fps
-        self.stamp = 0.0
+        self.truth = truth
+        self.recorded: list[float] = []  # when each frame was
 
     def walk(self, frames: list[Any]) -> Round:
         """One frame after the other."""
         done = Round()
         for frame in frames:
             rgb, depth = frame.load()
-            self.stamp += self.step_s
+            stamp = len(self.recorded) * self.step_s
+            self.recorded.append(frame.timestamp)
             began = time.thread_time()
-            result = self.slam.track(rgb, depth, self.stamp)
+            result = self.slam.track(rgb, depth, stamp)
             spent_ms = 1e3 * (time.thread_time() - began)
             (done.keyframe_ms if result.is_keyframe else done.plain_ms).append(spent_ms)
         snapshot = self.slam.snapshot()
         done.keyframes, done.landmarks = len(snapshot.keyframes()[0]), len(snapshot.landmarks()[0])
         done.planes = len(snapshot.scene_graph()["planes"])
         done.memory_mb = resident_mb()
+        done.ate_mm = self.ate_mm()
         return done
+
+    def ate_mm(self) -> float | None:
+        """RMSE of all positions so far, aligned with the truth."""
+        if self.truth is None:
+            return None
+        stamps, poses = self.slam.trajectory()
+        recorded = np.array(self.recorded)[np.round(stamps / self.step_s).astype(int)]
+        within = (recorded >= self.truth.timestamps[0]) & (recorded <= self.truth.timestamps[-1])
+        true = np.column_stack(
+            [np.interp(recorded[within], self.truth.timestamps, self.truth.positions[:, i]) for i in range(3)]
+        )
+        positions = poses[within, :3, 3]
+        turn, shift = aligned(positions, true)
+        off_m = np.linalg.norm(positions @ turn.T + shift - true, axis=1)
+        return float(1e3 * np.sqrt(np.mean(off_m**2)))
 
 
 def main() -> None:
@@ -102,7 +127,8 @@ def main() -> None:
     config = vsgraphs.Config()
     config.set("system.execution", "serial")
     apply_assignments(config, options.set)
-    walker = Walker(sequence, config)
+    file = options.sequence / "groundtruth.txt"
+    walker = Walker(sequence, config, read_tum_trajectory(file) if file.exists() else None)
     print(HEADER)
     rounds: list[Round] = []
     for number in range(1, options.rounds + 1):

@@ -4,9 +4,9 @@
     benchmarks/relocalisation.py DATA/kitchen
 
 Every other frame is mapped. Then, ten times: three seconds of darkness, and a second of the frames between at
-another place. Found: a pose within that second. Its error is told twice: in the map, the distance to where the
-map has that instant, between the mapped frames before and after it; and the distance to the truth, after the
-mapped trajectory was aligned with it, which holds the map's own error too. Serial execution; CPU times of the
+another place. Found: a pose within that second. Its error is told twice: off the map, the distance to where
+the map has that instant, between the mapped frames before and after it; and off the truth, after the mapped
+trajectory was aligned with it, which holds the map's own error too. Serial execution; CPU times of the
 calling thread.
 """
 

@@ -47,7 +47,8 @@ nb::list similar_places(const SavedAtlas& atlas, std::uint32_t keyframe, std::ui
   const MapState& state = map_of(atlas, number);
   const auto& keyframes = state.map->keyframes();
   const KeyframeId id = keyframe < keyframes.index_bound() ? keyframes.at_index(keyframe) : KeyframeId{};
-  if (!id.valid()) throw nb::index_error(("keyframe " + std::to_string(keyframe) + " is not in the map").c_str());
+  if (!id.valid())
+    throw nb::index_error(("keyframe " + std::to_string(keyframe) + " is not in the map").c_str());
   std::vector<std::uint8_t> excluded(keyframes.index_bound(), 1);
   for (std::uint32_t index = 0; index + gap <= keyframe; ++index) excluded[index] = 0;
   excluded[keyframe] = 1;
@@ -129,9 +130,11 @@ void bind_atlas(nb::module_& m) {
       .def("similar_places", &similar_places, "keyframe"_a, "gap"_a = 10U, "count"_a = 5, "number"_a = -1,
            nb::sig("def similar_places(self, keyframe: int, gap: int = 10, count: int = 5, number: int = -1) "
                    "-> list[tuple[int, float]]"),
-           "(keyframe, score from 0 to 1) of at most `count` keyframes of a map that look most like one of its "
+           "(keyframe, score from 0 to 1) of at most `count` keyframes of a map that look most like one of "
+           "its "
            "keyframes, best\n"
-           "first, among those whose ids are lower by `gap` or more. Candidates: look-alike places score alike. "
+           "first, among those whose ids are lower by `gap` or more. Candidates: look-alike places score "
+           "alike. "
            "Ids are those of\n"
            "Snapshot.keyframes(). Raises IndexError for a map or keyframe that is not there.")
       .def("__len__", [](const SavedAtlas& atlas) { return atlas.state.maps.size(); })

@@ -151,8 +151,8 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
     if (!keyframe || id == first) continue;
     const WitnessedShares shares = witnessed_shares(options, map, id);
     const bool redundant = shares.witnessed > options.redundant_share && !keyframe->tracked_link;
-    const KeyframeId before = may_be_revisit(options, *keyframe, shares) ? made_here_before(options, map, id)
-                                                                         : KeyframeId{};
+    const KeyframeId before =
+        may_be_revisit(options, *keyframe, shares) ? made_here_before(options, map, id) : KeyframeId{};
     if (!redundant && !before.valid()) continue;
     const KeyframeId anchor = successor(map, id, before);
     if (!anchor.valid()) continue;

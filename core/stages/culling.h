@@ -37,7 +37,8 @@ void describe(CullingOptions& o, Visitor& field) {
   field("revisit_m", o.revisit_m, 0.0, 5.0, "how near that is");
   field("revisit_rad", o.revisit_rad, 0.0, 3.2, "and how alike the two look");
   field("revisit_share", o.revisit_share, 0.0, 1.0,
-        "it is removed if this share of its landmarks is seen as well by enough others, one of them that much older");
+        "it is removed if this share of its landmarks is seen as well by enough others, one of them that "
+        "much older");
 }
 
 // Landmarks on probation, with the number of keyframes made since their birth.

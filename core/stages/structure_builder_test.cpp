@@ -23,7 +23,7 @@ class CarvingTest : public ::testing::Test {
       keyframes_.push_back(test::add_keyframe(map_, keyframe));
       map_.apply(SetPatches{keyframes_.back(), std::make_shared<const KeyframeSurfaces>()});
     }
-    map_.apply(SetUp{-Eigen::Vector3d::UnitY()});
+    map_.apply(vsgraphs::SetUp{-Eigen::Vector3d::UnitY()});
   }
   std::vector<KeyframeId> carved() {
     builder_.propose(map_.snapshot(), 0, true, nullptr);
