@@ -127,7 +127,9 @@ def test_a_second_run_goes_on_in_the_frame_of_the_first(
     assert np.linalg.norm(first.positions[common] - second.positions, axis=1).max() < 0.02
     info = package.load_atlas(out / "more.vsg").info()
     assert info["maps"] == 1
-    assert info["keyframes"] >= package.load_atlas(walked / "atlas.vsg").info()["keyframes"]
+    # The same way once more: the map is as large as it was, give or take what another sight makes redundant.
+    before = package.load_atlas(walked / "atlas.vsg").info()["keyframes"]
+    assert 0.7 * before <= info["keyframes"] <= 1.3 * before
 
 
 def test_localising_only_leaves_the_maps_as_they_are(
