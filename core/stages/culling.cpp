@@ -93,22 +93,19 @@ KeyframeId made_here_before(const CullingOptions& options, const Map& map, Keyfr
   return {};
 }
 
-// What a keyframe that is about to go saw of planes that enough living ones see; its patches, if that was all.
+// What a keyframe that is about to go saw of planes that enough others saw; its patches, if that was all. Retired ones that
+// kept theirs count: a plane that few living ones see would otherwise gather another sight at every return.
 void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft) {
   std::vector<std::pair<PlaneId, PlaneObservation>> forgotten;
   bool all = true;
   draft.map().planes().for_each([&](PlaneId plane_id, const MappedPlane& plane) {
-    int others = 0;
     std::vector<PlaneObservation> own;
     for (const PlaneObservation& o : plane.observations) {
-      if (o.keyframe == id) {
-        own.push_back(o);
-      } else {
-        others += draft.map().keyframes().contains(o.keyframe);
-      }
+      if (o.keyframe == id) own.push_back(o);
     }
+    const std::size_t others = plane.observations.size() - own.size();
     if (own.empty()) return;
-    if (others < options.redundant_witnesses) {
+    if (others < static_cast<std::size_t>(options.redundant_witnesses)) {
       all = false;
       return;
     }

@@ -268,6 +268,16 @@ TEST_F(RevisitCullingTest, WhatEnoughOthersSeeOfPlanesIsForgotten) {
   EXPECT_EQ(after.retired_keyframes().find(at(4))->patches, nullptr);
 }
 
+TEST_F(RevisitCullingTest, WhatRetiredOnesSawOfPlanesCounts) {
+  for (int k = 5; k < 7; ++k) add(keyframe_seeing(camera_, standing_at(0.1 * k), points_));
+  observe_all();
+  const PlaneId plane = add_plane({0, 1, 2, 4});
+  for (const int k : {1, 2}) map_.apply(RemoveKeyframe{at(k), at(0)});
+  const Map after = after_culling(4);
+  EXPECT_EQ(after.planes().find(plane)->observations.size(), 3U);
+  EXPECT_EQ(after.retired_keyframes().find(at(4))->patches, nullptr);
+}
+
 TEST_F(RevisitCullingTest, WhatFewSeeOfPlanesStays) {
   observe_all();
   const PlaneId common = add_plane({0, 1, 2, 4}), rare = add_plane({0, 4});
