@@ -30,12 +30,32 @@ SavedAtlas atlas_of(const AtlasState& state, const Config& config, const Camera&
           std::move(map_names)};
 }
 
-std::shared_ptr<Map> snapshot_of(const SavedAtlas& atlas, std::int64_t number) {
+const MapState& map_of(const SavedAtlas& atlas, std::int64_t number) {
   const auto maps = static_cast<std::int64_t>(atlas.state.maps.size());
   const std::int64_t index = number < 0 ? number + maps : number;
   if (index < 0 || index >= maps)
     throw nb::index_error(("map " + std::to_string(number) + " of " + std::to_string(maps)).c_str());
-  return std::const_pointer_cast<Map>(atlas.state.maps[static_cast<std::size_t>(index)].map);
+  return atlas.state.maps[static_cast<std::size_t>(index)];
+}
+
+std::shared_ptr<Map> snapshot_of(const SavedAtlas& atlas, std::int64_t number) {
+  return std::const_pointer_cast<Map>(map_of(atlas, number).map);
+}
+
+nb::list similar_places(const SavedAtlas& atlas, std::uint32_t keyframe, std::uint32_t gap, int count,
+                        std::int64_t number) {
+  const MapState& state = map_of(atlas, number);
+  const auto& keyframes = state.map->keyframes();
+  const KeyframeId id = keyframe < keyframes.index_bound() ? keyframes.at_index(keyframe) : KeyframeId{};
+  if (!id.valid())
+    throw nb::index_error(("keyframe " + std::to_string(keyframe) + " is not in the map").c_str());
+  std::vector<std::uint8_t> excluded(keyframes.index_bound(), 1);
+  for (std::uint32_t index = 0; index + gap <= keyframe; ++index) excluded[index] = 0;
+  excluded[keyframe] = 1;
+  nb::list similar;
+  for (const PlaceMatch& match : state.places->query(*keyframes.find(id)->features, count, excluded))
+    similar.append(nb::make_tuple(match.keyframe.index, match.score));
+  return similar;
 }
 
 void put(nb::dict& d, const MapCounts& counts) {
@@ -45,6 +65,7 @@ void put(nb::dict& d, const MapCounts& counts) {
   d["rooms"] = counts.rooms;
   d["floors"] = counts.floors;
   d["doors"] = counts.doors;
+  d["markers"] = counts.markers;
 }
 
 nb::dict info_of(const SavedAtlas& atlas) {
@@ -101,12 +122,21 @@ void bind_atlas(nb::module_& m) {
           "InputError\n"
           "naming the file and the cause.")
       .def("info", &info_of, nb::sig("def info(self) -> dict[str, typing.Any]"),
-           "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors "
-           "of "
-           "all maps;\n"
+           "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors, "
+           "markers of all maps;\n"
            "each: a list with the same counts and the name per map.")
       .def("snapshot", &snapshot_of, "number"_a = -1,
            "The map of this number; the last one is the one worked on. Raises IndexError.")
+      .def("similar_places", &similar_places, "keyframe"_a, "gap"_a = 10U, "count"_a = 5, "number"_a = -1,
+           nb::sig("def similar_places(self, keyframe: int, gap: int = 10, count: int = 5, number: int = -1) "
+                   "-> list[tuple[int, float]]"),
+           "(keyframe, score from 0 to 1) of at most `count` keyframes of a map that look most like one of "
+           "its "
+           "keyframes, best\n"
+           "first, among those whose ids are lower by `gap` or more. Candidates: look-alike places score "
+           "alike. "
+           "Ids are those of\n"
+           "Snapshot.keyframes(). Raises IndexError for a map or keyframe that is not there.")
       .def("__len__", [](const SavedAtlas& atlas) { return atlas.state.maps.size(); })
       .def_prop_ro(
           "empty", [](const SavedAtlas& atlas) { return is_empty(atlas.state); }, "no map has a keyframe")

@@ -69,7 +69,10 @@ def test_markers_are_mapped_and_name_rooms_and_door(vsgraphs: Program, walk: Pat
     out = tmp_path / "out"
     # 20 hangs in the first room; the file says nothing of it but its size.
     file = marker_file(tmp_path, MARKERS)
-    done = vsgraphs("run", walk, "--out", out, "--markers", file, "--execution", "serial")
+    done = vsgraphs(
+        *("run", walk, "--out", out, "--markers", file, "--execution", "serial"),
+        *("--save-atlas", out / "atlas.vsg"),
+    )
     assert done.returncode == 0, done.stderr
     graph, transform = load_scene_graph(out / "scene_graph.json"), truth_from_graph(walk, out)
     truth = {row["id"]: row for row in json.loads((walk / "scene_gt.json").read_text())["markers"]}
@@ -87,6 +90,8 @@ def test_markers_are_mapped_and_name_rooms_and_door(vsgraphs: Program, walk: Pat
     found = report(out)
     assert found["markers"]["dictionary"] == "4x4_50"
     assert found["markers"]["sights"] >= 6
+    info = json.loads(vsgraphs("info", out / "atlas.vsg", "--json").stdout)
+    assert info["markers"] == info["each"][0]["markers"] == len(graph.markers)
     assert found["warnings"][-1].endswith("these are not in the map: 33 ('cellar')")
 
 

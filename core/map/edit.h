@@ -68,7 +68,7 @@ struct CountSightings {
   std::uint32_t found = 0;
 };
 
-// The planar pieces of a keyframe, or new ones in place of the old: plane observations of the old ones go.
+// The planar pieces of a keyframe, or new ones (null: none) in place of the old: plane observations of the old ones go.
 struct SetPatches {
   KeyframeId id;
   std::shared_ptr<const KeyframeSurfaces> patches;

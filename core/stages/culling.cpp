@@ -29,32 +29,111 @@ void Probation::judge(const CullingOptions& options, std::int64_t keyframe_count
 
 namespace {
 
-// Others that see the landmark at the same or a finer scale.
-bool well_witnessed(const CullingOptions& options, const Map& map, const Landmark& landmark,
-                    KeyframeId keyframe, int level) {
-  int witnesses = 0;
+// Who sees a landmark at the same or a finer scale.
+struct Witnesses {
+  bool enough = false;
+  bool made_before = false;  // one of them long before the keyframe asked about
+};
+
+Witnesses witnesses_of(const CullingOptions& options, const Map& map, const Landmark& landmark,
+                       KeyframeId keyframe, int level) {
+  const auto gap = static_cast<std::uint32_t>(options.revisit_gap_keyframes);
+  Witnesses result;
+  int count = 0;
   for (const Observation& o : landmark.observations) {
     if (o.keyframe == keyframe) continue;
     const Keyframe* other = map.keyframes().find(o.keyframe);
-    if (other && (*other->features)[o.feature].level <= level + 1 &&
-        ++witnesses >= options.redundant_witnesses) {
-      return true;
-    }
+    if (!other || (*other->features)[o.feature].level > level + 1) continue;
+    result.enough |= ++count >= options.redundant_witnesses;
+    result.made_before |= o.keyframe.index + gap <= keyframe.index;
+    if (result.enough && result.made_before) break;
   }
-  return false;
+  return result;
 }
 
-bool redundant(const CullingOptions& options, const Map& map, KeyframeId id) {
+// Shares of a keyframe's landmarks with depth: those that enough others see, and of these those that were seen long before.
+struct WitnessedShares {
+  int landmarks = 0;
+  double witnessed = 0;
+  double known_before = 0;
+};
+
+WitnessedShares witnessed_shares(const CullingOptions& options, const Map& map, KeyframeId id) {
   const Keyframe& keyframe = *map.keyframes().find(id);
-  int seen = 0, shared = 0;
+  WitnessedShares shares;
+  int witnessed = 0, known_before = 0;
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     const Landmark* landmark = map.landmarks().find(keyframe.landmarks[i]);
     const Feature& feature = (*keyframe.features)[static_cast<int>(i)];
     if (!landmark || !feature.has_depth()) continue;
-    ++seen;
-    shared += well_witnessed(options, map, *landmark, id, feature.level);
+    ++shares.landmarks;
+    const Witnesses witnesses = witnesses_of(options, map, *landmark, id, feature.level);
+    witnessed += witnesses.enough;
+    known_before += witnesses.enough && witnesses.made_before;
   }
-  return seen > 0 && shared > options.redundant_share * seen;
+  if (shares.landmarks > 0) {
+    shares.witnessed = static_cast<double>(witnessed) / shares.landmarks;
+    shares.known_before = static_cast<double>(known_before) / shares.landmarks;
+  }
+  return shares;
+}
+
+// The oldest keyframe that stands where this one does, made long before it.
+KeyframeId made_here_before(const CullingOptions& options, const Map& map, KeyframeId id) {
+  const Se3 camera_from_world = map.keyframes().find(id)->world_from_camera.inverse();
+  const auto gap = static_cast<std::uint32_t>(options.revisit_gap_keyframes);
+  for (std::uint32_t index = 0; index + gap <= id.index; ++index) {
+    const KeyframeId other = map.keyframes().at_index(index);
+    if (!other.valid()) continue;
+    const Se3 step = camera_from_world * map.keyframes().find(other)->world_from_camera;
+    if (step.translation().norm() < options.revisit_m &&
+        rotation_angle(step.rotation()) < options.revisit_rad)
+      return other;
+  }
+  return {};
+}
+
+// What a keyframe that is about to go saw of planes that enough others saw; its patches, if that was all. Retired ones that
+// kept theirs count: a plane that few living ones see would otherwise gather another sight at every return.
+void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft) {
+  std::vector<std::pair<PlaneId, PlaneObservation>> forgotten;
+  bool all = true;
+  draft.map().planes().for_each([&](PlaneId plane_id, const MappedPlane& plane) {
+    std::vector<PlaneObservation> own;
+    for (const PlaneObservation& o : plane.observations) {
+      if (o.keyframe == id) own.push_back(o);
+    }
+    const std::size_t others = plane.observations.size() - own.size();
+    if (own.empty()) return;
+    if (others < static_cast<std::size_t>(options.redundant_witnesses)) {
+      all = false;
+      return;
+    }
+    for (const PlaneObservation& o : own) forgotten.emplace_back(plane_id, o);
+  });
+  if (all && draft.map().keyframes().find(id)->patches) {
+    draft.record(SetPatches{id, nullptr});
+    return;
+  }
+  for (const auto& [plane, observation] : forgotten) draft.record(RemovePlaneObservation{plane, observation});
+}
+
+// Where frames and links that hang on a keyframe go when it does; invalid if there is nowhere.
+KeyframeId successor(const Map& map, KeyframeId id, KeyframeId made_before) {
+  const auto neighbours = map.covisible(id, 1);
+  if (!neighbours.empty()) return neighbours.front().first;
+  // Tracking measured this step; that the camera came back is only what the map makes of all steps since.
+  if (const auto& link = map.keyframes().find(id)->tracked_link) {
+    const auto living = map.reanchor({link->to, Se3{}});
+    if (living && living->keyframe != id) return living->keyframe;
+  }
+  return made_before;
+}
+
+bool may_be_revisit(const CullingOptions& options, const Keyframe& keyframe, const WitnessedShares& shares) {
+  // Held by surfaces alone: they were seen before wherever the camera stood before.
+  if (shares.landmarks == 0) return keyframe.tracked_link.has_value();
+  return shares.known_before >= options.revisit_share;
 }
 
 }  // namespace
@@ -66,9 +145,16 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
   for (const KeyframeId id : candidates) {
     const Map& map = draft.map();
     const Keyframe* keyframe = map.keyframes().find(id);
-    if (!keyframe || id == first || keyframe->tracked_link || !redundant(options, map, id)) continue;
-    const auto neighbours = map.covisible(id, 1);
-    if (!neighbours.empty()) draft.record(RemoveKeyframe{id, neighbours.front().first});
+    if (!keyframe || id == first) continue;
+    const WitnessedShares shares = witnessed_shares(options, map, id);
+    const bool redundant = shares.witnessed > options.redundant_share && !keyframe->tracked_link;
+    const KeyframeId before =
+        may_be_revisit(options, *keyframe, shares) ? made_here_before(options, map, id) : KeyframeId{};
+    if (!redundant && !before.valid()) continue;
+    const KeyframeId anchor = successor(map, id, before);
+    if (!anchor.valid()) continue;
+    if (before.valid()) forget_surfaces(options, id, draft);
+    draft.record(RemoveKeyframe{id, anchor});
   }
 }
 

@@ -16,6 +16,10 @@ struct CullingOptions {
   int min_observations = 2;
   double redundant_share = 0.9;
   int redundant_witnesses = 3;
+  int revisit_gap_keyframes = 10;
+  double revisit_m = 0.25;
+  double revisit_rad = 0.25;
+  double revisit_share = 0.6;
 };
 
 template <typename Visitor>
@@ -28,6 +32,13 @@ void describe(CullingOptions& o, Visitor& field) {
   field("redundant_share", o.redundant_share, 0.5, 1.0,
         "a keyframe is removed if this share of its landmarks is seen as well by enough others");
   field("redundant_witnesses", o.redundant_witnesses, 1, 10, "how many others are enough");
+  field("revisit_gap_keyframes", o.revisit_gap_keyframes, 1, 1000,
+        "a keyframe that stands where one this much older does was made by coming back");
+  field("revisit_m", o.revisit_m, 0.0, 5.0, "how near that is");
+  field("revisit_rad", o.revisit_rad, 0.0, 3.2, "and how alike the two look");
+  field("revisit_share", o.revisit_share, 0.0, 1.0,
+        "it is removed if this share of its landmarks is seen as well by enough others, one of them that "
+        "much older");
 }
 
 // Landmarks on probation, with the number of keyframes made since their birth.
@@ -45,7 +56,10 @@ class Probation {
   std::deque<Entry> entries_;
 };
 
-// Removes the redundant keyframes among `candidates`; never the map's first.
+// Removes the redundant keyframes among `candidates`; never the map's first. One that was made by coming back goes sooner,
+// tracked link or not, and takes along what it saw of planes that enough others see: walking the same rooms again and
+// again must not make the map grow. What hung on it, links included, hangs on a neighbour from then on.
+// Cost: one visit per observation of a candidate's landmarks, and one per keyframe of the map for each that may go.
 void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>& candidates, Draft& draft);
 
 }  // namespace vsgraphs

@@ -188,5 +188,104 @@ TEST_F(KeyframeCullingTest, FramesOfARemovedKeyframeHangOnItsClosestNeighbour) {
   EXPECT_EQ(draft.map().reanchor({at(3), Se3{}})->keyframe, at(2));
 }
 
+// The fifth one stands 0.4 m from the first.
+class RevisitCullingTest : public KeyframeCullingTest {
+ protected:
+  RevisitCullingTest() {
+    options_.revisit_gap_keyframes = 4;
+    options_.revisit_m = 0.45;
+  }
+  // A plane that keyframes of these numbers see.
+  PlaneId add_plane(const std::vector<int>& seen_by) {
+    const PlaneId id = map_.planes().next_id();
+    map_.apply(AddPlane{id, MappedPlane{}});
+    for (const int k : seen_by) {
+      auto surfaces = std::make_shared<KeyframeSurfaces>();
+      surfaces->patches.resize(1);
+      if (!map_.keyframes().find(at(k))->patches) map_.apply(SetPatches{at(k), surfaces});
+      map_.apply(AddPlaneObservation{id, {at(k), 0}});
+    }
+    return id;
+  }
+  Map after_culling(int k) {
+    Draft draft(map_.snapshot());
+    cull_keyframes(options_, {at(k)}, draft);
+    EXPECT_FALSE(draft.map().keyframes().contains(at(k)));
+    return draft.map();
+  }
+};
+
+TEST_F(RevisitCullingTest, AKeyframeMadeByComingBackGoesSooner) {
+  observe_all();
+  unobserve(1, 6);
+  unobserve(2, 6);  // 14 of the last one's 20 landmarks have three other witnesses
+  EXPECT_THAT(culled({4}), testing::ElementsAre(4));
+  options_.revisit_share = 0.75;
+  EXPECT_THAT(culled({4}), testing::IsEmpty());
+  options_.revisit_share = 0.6;
+  options_.revisit_m = 0.35;
+  EXPECT_THAT(culled({4}), testing::IsEmpty()) << "nobody stood near";
+  options_.revisit_m = 0.45;
+  options_.revisit_gap_keyframes = 5;
+  EXPECT_THAT(culled({4}), testing::IsEmpty()) << "that was a moment ago";
+}
+
+TEST_F(RevisitCullingTest, WhereOnlyRecentOnesSeeTheSameNobodyCameBack) {
+  observe_all();
+  unobserve(1, 3);  // 17 of 20 have enough witnesses
+  unobserve(0, 4);  // 16 of them one that is old
+  EXPECT_THAT(culled({4}), testing::ElementsAre(4));
+  for (int i = 4; i < 10; ++i) map_.apply(RemoveObservation{landmarks_[static_cast<std::size_t>(i)], at(0)});
+  EXPECT_THAT(culled({4}), testing::IsEmpty());
+}
+
+TEST_F(RevisitCullingTest, OneHeldByATrackedLinkGoesOnlyWhereTheCameraCameBack) {
+  Keyframe linked = keyframe_seeing(camera_, standing_at(0.4), points_);
+  linked.tracked_link = TrackedLink{at(4), standing_at(0), Matrix6d::Identity()};
+  add(linked);
+  Keyframe next = linked;
+  next.world_from_camera = standing_at(0.9);
+  next.tracked_link->to = at(5);
+  next.tracked_link->to_from_camera = standing_at(0.5);
+  add(next);
+  EXPECT_THAT(culled({6}), testing::IsEmpty()) << "new ground";
+  ASSERT_THAT(culled({5}), testing::ElementsAre(5));
+  const Map after = after_culling(5);
+  EXPECT_NEAR(after.resolve({at(5), Se3{}})->translation().x(), 0.4, 1e-12);
+  EXPECT_EQ(after.reanchor({at(5), Se3{}})->keyframe, at(4)) << "tracking measured that step";
+  const auto link = after.reanchor({at(5), next.tracked_link->to_from_camera});
+  ASSERT_TRUE(link) << "the next one's link holds on to a living keyframe";
+  EXPECT_TRUE(after.keyframes().contains(link->keyframe));
+  EXPECT_NEAR(after.resolve(*link)->translation().x(), 0.9, 1e-12);
+}
+
+TEST_F(RevisitCullingTest, WhatEnoughOthersSeeOfPlanesIsForgotten) {
+  observe_all();
+  const PlaneId plane = add_plane({0, 1, 2, 4});
+  const Map after = after_culling(4);
+  EXPECT_EQ(after.planes().find(plane)->observations.size(), 3U);
+  ASSERT_NE(after.retired_keyframes().find(at(4)), nullptr);
+  EXPECT_EQ(after.retired_keyframes().find(at(4))->patches, nullptr);
+}
+
+TEST_F(RevisitCullingTest, WhatRetiredOnesSawOfPlanesCounts) {
+  for (int k = 5; k < 7; ++k) add(keyframe_seeing(camera_, standing_at(0.1 * k), points_));
+  observe_all();
+  const PlaneId plane = add_plane({0, 1, 2, 4});
+  for (const int k : {1, 2}) map_.apply(RemoveKeyframe{at(k), at(0)});
+  const Map after = after_culling(4);
+  EXPECT_EQ(after.planes().find(plane)->observations.size(), 3U);
+  EXPECT_EQ(after.retired_keyframes().find(at(4))->patches, nullptr);
+}
+
+TEST_F(RevisitCullingTest, WhatFewSeeOfPlanesStays) {
+  observe_all();
+  const PlaneId common = add_plane({0, 1, 2, 4}), rare = add_plane({0, 4});
+  const Map after = after_culling(4);
+  EXPECT_EQ(after.planes().find(common)->observations.size(), 3U);
+  EXPECT_EQ(after.planes().find(rare)->observations.size(), 2U);
+  EXPECT_NE(after.retired_keyframes().find(at(4))->patches, nullptr);
+}
+
 }  // namespace
 }  // namespace vsgraphs

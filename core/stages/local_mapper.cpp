@@ -1,5 +1,7 @@
 #include "core/stages/local_mapper.h"
 
+#include <algorithm>
+
 #include "core/stages/appearance.h"
 #include "core/stages/landmark_creation.h"
 #include "core/stages/landmark_fusion.h"
@@ -86,6 +88,20 @@ void LocalMapper::refresh_appearance(KeyframeId keyframe, Draft& draft) const {
   }
 }
 
+// Keyframes held by surfaces share no landmarks, so that no window holds them: the last few before this one.
+void LocalMapper::add_linked(const Map& map, KeyframeId keyframe, std::vector<KeyframeId>& candidates) const {
+  constexpr int looked_at = 12;
+  int seen = 0;
+  for (std::uint32_t index = keyframe.index; index-- > 0 && seen < looked_at;) {
+    const KeyframeId id = map.keyframes().at_index(index);
+    if (!id.valid()) continue;
+    ++seen;
+    if (map.keyframes().find(id)->tracked_link &&
+        std::find(candidates.begin(), candidates.end(), id) == candidates.end())
+      candidates.push_back(id);
+  }
+}
+
 MapEdit LocalMapper::refine(KeyframeId keyframe, const Snapshot& snapshot, const std::function<bool()>& stop,
                             SolveReport& report, TraceSink* trace) {
   Draft draft(snapshot);
@@ -106,6 +122,7 @@ MapEdit LocalMapper::refine(KeyframeId keyframe, const Snapshot& snapshot, const
   for (const KeyframeId id : window.free) {
     if (id != keyframe) candidates.push_back(id);
   }
+  add_linked(draft.map(), keyframe, candidates);
   cull_keyframes(options_.culling, candidates, draft);
   return draft.take();
 }

@@ -58,6 +58,7 @@ class LocalMapper {
  private:
   void take_over_observations(const KeyframeRequest& request, KeyframeId keyframe, Draft& draft);
   std::vector<KeyframeId> neighbours_of(const Map& map, KeyframeId keyframe, int count) const;
+  void add_linked(const Map& map, KeyframeId keyframe, std::vector<KeyframeId>& candidates) const;
   void refresh_appearance(KeyframeId keyframe, Draft& draft) const;
 
   LocalMapperOptions options_;

@@ -72,6 +72,13 @@ void StructureBuilder::carve(const Map& map, const Se3& level_from_world, bool l
     if (keyframe.surface && !free_space_.views().contains(id))
       free_space_.integrate(id, keyframe.surface, level_from_world * keyframe.world_from_camera);
   });
+  // Keyframes that went because others see the same take what they had carved along.
+  std::vector<KeyframeId> forgotten;
+  for (const auto& [id, view] : free_space_.views()) {
+    const RetiredKeyframe* retired = map.retired_keyframes().find(id);
+    if (retired && retired->anchor.valid() && !retired->patches) forgotten.push_back(id);
+  }
+  for (const KeyframeId id : forgotten) free_space_.remove(id);
   std::vector<KeyframePose> poses;
   for (const auto& [id, view] : free_space_.views()) {
     if (const auto pose = map.resolve({id, Se3{}})) poses.push_back({id, level_from_world * *pose});

@@ -80,8 +80,8 @@ SavedAtlas load_atlas(const std::filesystem::path& path) {
 
 MapCounts count(const Map& map) {
   const FoundStructure& structure = map.structure();
-  return {map.keyframes().size(), map.landmarks().size(),  map.planes().size(),
-          structure.rooms.size(), structure.floors.size(), structure.doors.size()};
+  return {map.keyframes().size(),  map.landmarks().size(), map.planes().size(), structure.rooms.size(),
+          structure.floors.size(), structure.doors.size(), map.markers().size()};
 }
 
 MapCounts& MapCounts::operator+=(const MapCounts& other) {
@@ -91,6 +91,7 @@ MapCounts& MapCounts::operator+=(const MapCounts& other) {
   rooms += other.rooms;
   floors += other.floors;
   doors += other.doors;
+  markers += other.markers;
   return *this;
 }
 

@@ -39,7 +39,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas);
 
 // How many of each there are.
 struct MapCounts {
-  std::size_t keyframes = 0, landmarks = 0, planes = 0, rooms = 0, floors = 0, doors = 0;
+  std::size_t keyframes = 0, landmarks = 0, planes = 0, rooms = 0, floors = 0, doors = 0, markers = 0;
   MapCounts& operator+=(const MapCounts& other);
 };
 MapCounts count(const Map& map);

@@ -34,6 +34,8 @@ MapState some_map(int first_name) {
   test::add_landmarks(map, points, keyframes);
   map.apply(RemoveKeyframe{keyframes[1], keyframes[0]});
   places->remove(keyframes[1]);
+  map.apply(AddMarker{{7}, {0.2, Se3{}, {}}});
+  map.apply(AddMarkerObservation{{7}, {keyframes[0], Se3{}, Matrix6d::Identity()}});
   map.apply(MapEdit{});
   return {map.snapshot(), std::move(places), std::move(space)};
 }
@@ -85,6 +87,7 @@ TEST(AtlasFile, SavingWhatWasLoadedGivesTheSameBytes) {
   EXPECT_EQ(back.camera.distortion, atlas.camera.distortion);
   EXPECT_EQ(count(map).keyframes, 2U);
   EXPECT_EQ(count(map).landmarks, 48U);
+  EXPECT_EQ(count(map).markers, 1U);
 }
 
 TEST(AtlasFile, MapsWithoutKeyframesAndNoMapsAreAtlasesToo) {

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors")
+COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors", "markers")
 
 
 def show_atlas(file: Path, *, as_json: bool) -> None:
