@@ -71,7 +71,7 @@ ReprojectionObservation measure(const MeasurementModel& model, const Feature& fe
   o.landmark = landmark;
   o.u = feature.u;
   o.v = feature.v;
-  o.inv_sigma_px = static_cast<float>(1.0 / (model.sigma_px * std::pow(model.scale_factor, feature.level)));
+  o.inv_sigma_px = static_cast<float>(1.0 / std::pow(model.scale_factor, feature.level));
   if (feature.has_depth()) {
     o.inverse_depth = 1.0f / feature.depth_m;
     o.inv_sigma_inverse_depth =

@@ -26,8 +26,7 @@ Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fi
 // How reliable a measurement is, by the pyramid level it was made at and the sensor's noise; and which kinds count.
 struct MeasurementModel {
   Camera camera;
-  double scale_factor = 1.2;  // of the pyramid
-  double sigma_px = 1.0;      // at level 0
+  double scale_factor = 1.2;  // of the pyramid; a feature is as good as a pixel of its level
   FactorSwitches factors;
 };
 

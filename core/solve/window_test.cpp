@@ -111,14 +111,13 @@ TEST_F(WindowTest, MeasurementsAreWeightedByLevelAndDepth) {
                                           });
   const KeyframeId a = add(standing_at(0), points_), b = add_keyframe(map_, coarse);
   share(a, b, 30);
-  model_.sigma_px = 2.0;
   const WindowProblem problem = build_problem(map_, select_window(map_, b, 10, 10), model_);
   int coarse_seen = 0, without_depth = 0;
   for (const ReprojectionObservation& o : problem.bundle.observations) {
     const bool of_b = problem.keyframe_of_pose[static_cast<std::size_t>(o.pose)] == b;
     coarse_seen += of_b;
     without_depth += !o.has_depth();
-    EXPECT_NEAR(o.inv_sigma_px, of_b ? 0.5 / std::pow(1.2, 3) : 0.5, 1e-6);
+    EXPECT_NEAR(o.inv_sigma_px, of_b ? 1.0 / std::pow(1.2, 3) : 1.0, 1e-6);
     if (!o.has_depth()) continue;
     const double depth_m = 1.0 / static_cast<double>(o.inverse_depth);
     EXPECT_NEAR(o.inv_sigma_inverse_depth, inv_sigma_of_inverse_depth(model_.camera.depth_noise, depth_m),

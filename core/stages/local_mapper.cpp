@@ -13,7 +13,7 @@ LocalMapper::LocalMapper(const LocalMapperOptions& options, const Camera& camera
     : options_(options),
       camera_(camera),
       pyramid_(pyramid),
-      model_{camera, pyramid.factor, options.sigma_px, factors} {}
+      model_{camera, pyramid.factor, factors} {}
 
 MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& id,
                             TraceSink* trace) {

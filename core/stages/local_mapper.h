@@ -22,7 +22,6 @@ struct LocalMapperOptions {
   int window_witnesses = 25;
   int iterations_before_dropping = 5;
   int iterations = 10;
-  double sigma_px = 1.0;
   CullingOptions culling;
 };
 
@@ -38,7 +37,6 @@ void describe(LocalMapperOptions& o, Visitor& field) {
   field("iterations_before_dropping", o.iterations_before_dropping, 0, 50,
         "iterations of a local adjustment before outliers are dropped");
   field("iterations", o.iterations, 1, 50, "iterations of a local adjustment after that");
-  field("sigma_px", o.sigma_px, 0.1, 10.0, "standard deviation of a feature's position at pyramid level 0");
 }
 
 class LocalMapper {

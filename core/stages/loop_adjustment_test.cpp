@@ -32,7 +32,7 @@ class FullAdjustmentTest : public ::testing::Test {
   }
 
   test::LoopWorld world_;
-  MeasurementModel model_{world_.camera, world_.pyramid.factor, 1.0, {}};
+  MeasurementModel model_{world_.camera, world_.pyramid.factor, {}};
   Snapshot snapshot_;
 };
 

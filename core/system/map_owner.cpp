@@ -14,7 +14,7 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
       loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
       place_options_(config.places),
       places_(config.places),
-      model_{camera, config.orb.pyramid().factor, config.mapper.sigma_px, config.factors},
+      model_{camera, config.orb.pyramid().factor, config.factors},
       cell_(cell),
       spans_("local mapping"),
       scene_spans_("scene understanding") {
