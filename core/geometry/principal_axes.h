@@ -1,4 +1,4 @@
-// Principal axes of small symmetric matrices.
+// Principal axes and inverses of small symmetric matrices.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,7 @@ Eigen::Vector3d weakest_axis(const Eigen::Matrix3d& symmetric);
 double smallest_eigenvalue(const Eigen::Matrix2d& symmetric);
 double smallest_eigenvalue6(const Matrix6d& symmetric);
 
-// Projector onto the directions of motion that `information` (inverse covariance of a pose's tangent) knows worse than
-// `max_sigma`, m or rad.
-Matrix6d weak_directions(const Matrix6d& information, double max_sigma);
+// Inverse of a symmetric, positive definite matrix: covariance from information, and back.
+Matrix6d inverse6(const Matrix6d& positive);
 
 }  // namespace vsgraphs

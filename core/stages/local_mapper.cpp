@@ -10,10 +10,7 @@ namespace vsgraphs {
 
 LocalMapper::LocalMapper(const LocalMapperOptions& options, const Camera& camera, const ScalePyramid& pyramid,
                          const FactorSwitches& factors)
-    : options_(options),
-      camera_(camera),
-      pyramid_(pyramid),
-      model_{camera, pyramid.factor, factors} {}
+    : options_(options), camera_(camera), pyramid_(pyramid), model_{camera, pyramid.factor, factors} {}
 
 MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snapshot, KeyframeId& id,
                             TraceSink* trace) {

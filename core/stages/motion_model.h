@@ -2,11 +2,10 @@
 // A Kalman filter (Kalman, 1960) of the velocity, whose random walk dies down where nothing measures it (Ornstein-Uhlenbeck).
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "core/geometry/principal_axes.h"
 #include "core/geometry/se3.h"
 
 namespace vsgraphs {
@@ -32,8 +31,7 @@ class MotionModel {
       covariance_.diagonal() += seconds * acceleration();
     }
     const Matrix6d gained = 0.5 * seconds * seconds * information;
-    const Matrix6d predicted = covariance_.inverse();
-    covariance_ = (predicted + gained).ldlt().solve(Matrix6d::Identity());
+    covariance_ = inverse6(inverse6(covariance_) + gained);
     twist_per_s_ += covariance_ * gained * (measured - twist_per_s_);
     known_ = true;
   }
