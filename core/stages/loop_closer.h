@@ -23,7 +23,7 @@ namespace vsgraphs {
 struct LoopCloserOptions {
   int min_gap_keyframes = 10;
   int max_candidates = 5;
-  double min_score = 0.01;
+  double min_score = 0.005;
   int pause_keyframes = 3;
   int place_keyframes = 10;
   int neighbours = 5;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -21,7 +22,33 @@ struct Hit {
   std::uint8_t angle;
 };
 
-// Votes per keyframe and turn, both as a count and by weight.
+// A flag for the part of what features cover, one of 8 x 8, that a feature lies in.
+class ImageParts {
+ public:
+  explicit ImageParts(const FeatureSet& features) {
+    for (const Feature& f : features.features()) {
+      width_ = std::max(width_, f.u);
+      height_ = std::max(height_, f.v);
+    }
+  }
+  std::uint64_t flag(const Feature& f) const {
+    return std::uint64_t{1} << (8 * part(f.v, height_) + part(f.u, width_));
+  }
+
+ private:
+  static unsigned part(float at, float size) {
+    return static_cast<unsigned>(std::clamp(8 * at / (size + 1), 0.0F, 7.0F));
+  }
+  float width_ = 0, height_ = 0;
+};
+
+struct Votes {
+  double weight = 0;
+  int count = 0;
+  int parts = 0;  // of the image, that they come from
+};
+
+// Votes per keyframe and turn: a count, by weight, and where in the image they come from.
 class Ballot {
  public:
   Ballot(std::size_t keyframes, std::span<const std::uint8_t> removed)
@@ -38,25 +65,29 @@ class Ballot {
       hits_[static_cast<std::size_t>(best)] = hit;
     }
   }
-  void close(std::uint8_t angle, double keyframes) {
+  void close(std::uint8_t angle, std::uint64_t where, double keyframes) {
     const float weight =
         hits_.empty() ? 0 : static_cast<float>(std::log((keyframes + 1) / static_cast<double>(hits_.size())));
     for (const Hit& hit : hits_) {
       const auto bin = static_cast<std::uint8_t>(hit.angle - angle) / (256 / turn_bins);
       slots_[hit.keyframe].weight[static_cast<std::size_t>(bin)] += weight;
       ++slots_[hit.keyframe].count[static_cast<std::size_t>(bin)];
+      slots_[hit.keyframe].seen_in[static_cast<std::size_t>(bin)] |= where;
       best_[hit.keyframe] = no_hit;
     }
     hits_.clear();
   }
   // Of the best three neighbouring turns.
-  std::pair<double, int> result(std::size_t keyframe) const {
-    std::pair<double, int> best{0, 0};
+  Votes result(std::size_t keyframe) const {
+    Votes best;
     const Slot& slot = slots_[keyframe];
     for (std::size_t b = 0; b < turn_bins; ++b) {
       const std::size_t before = (b + turn_bins - 1) % turn_bins, after = (b + 1) % turn_bins;
       const double weight = slot.weight[before] + slot.weight[b] + slot.weight[after];
-      if (weight > best.first) best = {weight, slot.count[before] + slot.count[b] + slot.count[after]};
+      if (weight <= best.weight) continue;
+      best.weight = weight;
+      best.count = slot.count[before] + slot.count[b] + slot.count[after];
+      best.parts = std::popcount(slot.seen_in[before] | slot.seen_in[b] | slot.seen_in[after]);
     }
     return best;
   }
@@ -66,6 +97,7 @@ class Ballot {
   struct Slot {
     std::array<float, turn_bins> weight{};
     std::array<std::uint16_t, turn_bins> count{};
+    std::array<std::uint64_t, turn_bins> seen_in{};
   };
   std::span<const std::uint8_t> removed_;
   std::vector<Slot> slots_;
@@ -202,19 +234,25 @@ std::vector<PlaceMatch> PlaceIndex::query(const FeatureSet& features, int max_re
                                           std::span<const std::uint8_t> excluded) const {
   Ballot ballot(ids_.size(), removed_);
   const int asked = std::min(options_.features_per_keyframe, features.size());
+  const ImageParts parts(features);
+  std::uint64_t asked_in = 0;
   std::array<Probes, 2> probes;
   if (asked > 0) probes[0].gather(segments_, features.descriptor(0));
   for (int i = 0; i < asked; ++i) {
     if (i + 1 < asked) probes[(i + 1) % 2].gather(segments_, features.descriptor(i + 1));
     probes[i % 2].scan(options_.max_distance, ballot);
-    ballot.close(PlaceSegment::angle_steps(features[i].angle_rad), size_);
+    const std::uint64_t where = parts.flag(features[i]);
+    asked_in |= where;
+    ballot.close(PlaceSegment::angle_steps(features[i].angle_rad), where, size_);
   }
   std::vector<PlaceMatch> matches;
   const double most = asked * std::log(size_ + 1.0);
   for (std::size_t k = 0; k < ids_.size(); ++k) {
     if (k < excluded.size() && excluded[k]) continue;
-    const auto [weight, votes] = ballot.result(k);
-    if (weight > 0) matches.push_back({ids_[k], weight / most, votes});
+    const Votes votes = ballot.result(k);
+    if (votes.weight <= 0) continue;
+    const double spread = static_cast<double>(votes.parts) / std::popcount(asked_in);
+    matches.push_back({ids_[k], spread * votes.weight / most, votes.count});
   }
   const auto end = matches.begin() + std::min<std::ptrdiff_t>(max_results, std::ssize(matches));
   std::partial_sort(matches.begin(), end, matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {

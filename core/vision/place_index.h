@@ -5,7 +5,8 @@
 // and the 16 one bit away hold about 0.026 % of all features and, where a bit flips in one view of eight, a third of
 // the matching ones; the distance over half a descriptor decides. A feature's vote is worth the less the more keyframes it
 // is found in (inverse document frequency, Sivic and Zisserman, ICCV 2003), counted by how far it is turned, as a camera
-// turns all features alike (weak geometric consistency, Jegou, Douze, Schmid, ECCV 2008).
+// turns all features alike (weak geometric consistency, Jegou, Douze, Schmid, ECCV 2008). Votes from all over the image
+// count more than as many from one poster, which may hang in two rooms.
 //
 // Storage is a few immutable segments that are merged as they grow (the logarithmic method of Bentley and Saxe, 1980):
 // copies share them, so the owner hands out a copy per snapshot and any thread queries it while the owner goes on.
@@ -44,8 +45,9 @@ void describe(PlaceIndexOptions& o, Visitor& field) {
 
 struct PlaceMatch {
   KeyframeId keyframe;
-  double score = 0;  // 0..1: 1 if every feature asked for were found in this keyframe alone
-  int votes = 0;     // features found in it, turned alike
+  double score =
+      0;  // 0..1: 1 if every feature asked for were found in this keyframe alone; less where votes are in one place
+  int votes = 0;  // features found in it, turned alike
 };
 
 class PlaceIndex {

@@ -74,6 +74,28 @@ TEST(PlaceIndex, FindsPlacesSeenWithNoiseAmongHundreds) {
   }
 }
 
+TEST(PlaceIndex, ARoomCountsMoreThanAPosterOfIt) {
+  // The camera sees sixty looks all over the image; of the poster's thirty-six, one keyframe shows all and nothing else.
+  View now, room, poster;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const bool on_poster = i < 36;
+    now.show(i);
+    now.features.back().u =
+        on_poster ? 20.0F + static_cast<float>(i) : 640.0F * static_cast<float>(i - 36) / 24;
+    now.features.back().v = on_poster ? 30.0F : 20.0F * static_cast<float>(i - 36);
+    if (on_poster) poster.show(i);
+    if (!on_poster || i % 4 == 0) room.show(i);
+  }
+  PlaceIndex index;
+  index.add(keyframe(0), poster.set());
+  index.add(keyframe(1), room.set());
+  const auto matches = index.query(now.set(), 2);
+  ASSERT_EQ(matches.size(), 2U);
+  EXPECT_EQ(matches[0].keyframe, keyframe(1));
+  EXPECT_GT(matches[1].votes, matches[0].votes) << "though the poster has more votes";
+  EXPECT_LT(3 * matches[1].score, matches[0].score);
+}
+
 TEST(PlaceIndex, ScoresUnknownPlacesFarLower) {
   const PlaceIndex index = walked(300);
   const auto known = index.query(walk(120, 9000), 1);
