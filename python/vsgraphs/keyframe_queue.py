@@ -36,13 +36,14 @@ class KeyframeQueue(Generic[Item]):
         self._dropped = 0
         self._busy = self._stopping = self._left_behind = False
         self._failure: Exception | None = None
+        self._beside = beside
         self._thread = threading.Thread(target=self._run, name=name, daemon=True) if beside else None
         if self._thread is not None:
             self._thread.start()
 
     def put(self, item: Item) -> None:
-        """Hands over an item, which must not change any more; nothing happens once work has failed."""
-        if self._thread is None:
+        """Hands over an item, which must not change any more; no more after a failure or the end."""
+        if not self._beside:
             self._work(item)
             return
         with self._changed:
