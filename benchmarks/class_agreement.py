@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 import vsgraphs
+from vsgraphs.lens import depth_metres, undistort
 from vsgraphs.scene_graph import SceneGraph, load_scene_graph
 from vsgraphs.segment import SurfaceRole
 from vsgraphs.segment.label_folder import LabelFolder
@@ -94,10 +95,11 @@ def sampled_points(depth: Any, camera: Any) -> tuple[Array, tuple[Any, Any]]:
     rows, columns = np.meshgrid(
         np.arange(0, depth.shape[0], STEP_PX), np.arange(0, depth.shape[1], STEP_PX), indexing="ij"
     )
-    z = depth[rows, columns] / camera.depth_scale
+    z = depth_metres(depth, camera)[rows, columns].astype(np.float64)
     seen = (z > 0) & (z < MAX_RANGE_M)
     z, rows, columns = z[seen], rows[seen], columns[seen]
-    points = np.stack([(columns - camera.cx) / camera.fx * z, (rows - camera.cy) / camera.fy * z, z], axis=1)
+    x, y = undistort(camera, columns, rows)
+    points = np.stack([x * z, y * z, z], axis=1)
     return points, (rows, columns)
 
 

@@ -49,6 +49,7 @@ nb::list similar_places(const SavedAtlas& atlas, std::uint32_t keyframe, std::ui
   const KeyframeId id = keyframe < keyframes.index_bound() ? keyframes.at_index(keyframe) : KeyframeId{};
   if (!id.valid())
     throw nb::index_error(("keyframe " + std::to_string(keyframe) + " is not in the map").c_str());
+  if (count < 0) throw nb::value_error("count must not be negative");
   std::vector<std::uint8_t> excluded(keyframes.index_bound(), 1);
   for (std::uint32_t index = 0; index + gap <= keyframe; ++index) excluded[index] = 0;
   excluded[keyframe] = 1;

@@ -86,6 +86,8 @@ def test_python_asks_an_atlas_for_places_that_look_alike(walked: Path) -> None:
     ids, _, poses = atlas.snapshot().keyframes()
     places = poses[:, :3, 3]
     last = int(ids[-1])
+    with pytest.raises(ValueError, match="negative"):
+        atlas.similar_places(last, count=-1)
     similar = atlas.similar_places(last, gap=1, count=3)
     scores = [score for _, score in similar]
     assert 1 <= len(similar) <= 3

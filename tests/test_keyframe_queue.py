@@ -85,6 +85,7 @@ def test_a_failure_ends_the_work_and_is_told_once() -> None:
     assert worker.done == [0], "nothing after the failure"
     queue.put(2)
     assert worker.done == [0]
+    assert queue.dropped == 2
 
 
 def test_the_end_waits_no_longer_than_it_may() -> None:

@@ -27,6 +27,7 @@ struct AddKeyframe {
 struct RemoveKeyframe {
   KeyframeId id;
   KeyframeId anchor;
+  bool replaced = false;  // others show all that it saw: what it had carved of free space goes too
 };
 struct AddLandmark {
   LandmarkId id;

@@ -13,8 +13,8 @@ void visit_fields(T& v, auto& field) {
 }
 template <FieldsOf<RemoveKeyframe> T>
 void visit_fields(T& v, auto& field) {
-  auto& [id, anchor] = v;
-  field(id, anchor);
+  auto& [id, anchor, replaced] = v;
+  field(id, anchor, replaced);
 }
 template <FieldsOf<AddLandmark> T>
 void visit_fields(T& v, auto& field) {

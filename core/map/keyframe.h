@@ -49,12 +49,14 @@ void visit_fields(T& v, auto& field) {
 struct RetiredKeyframe {
   KeyframeId anchor;
   Se3 anchor_from_camera;
-  std::shared_ptr<const KeyframeSurfaces> patches;  // planes go on being where it saw them
+  std::shared_ptr<const KeyframeSurfaces>
+      patches;            // planes go on being where it saw them; null where no plane needs them
+  bool replaced = false;  // by others that show all it saw
 };
 template <FieldsOf<RetiredKeyframe> T>
 void visit_fields(T& v, auto& field) {
-  auto& [anchor, anchor_from_camera, patches] = v;
-  field(anchor, anchor_from_camera, patches);
+  auto& [anchor, anchor_from_camera, patches, replaced] = v;
+  field(anchor, anchor_from_camera, patches, replaced);
 }
 
 // A camera pose tied to a keyframe, so that corrections of the keyframe move it for free.

@@ -15,6 +15,21 @@ std::optional<AnchoredPose> Map::reanchor(AnchoredPose pose) const {
   return pose;
 }
 
+std::optional<TrackedLink> Map::living_link(KeyframeId id) const {
+  const Keyframe* keyframe = keyframes_.find(id);
+  if (!keyframe || !keyframe->tracked_link) return std::nullopt;
+  TrackedLink link = *keyframe->tracked_link;
+  int steps = 1;
+  while (const RetiredKeyframe* retired = keyframes_.contains(link.to) ? nullptr : retired_.find(link.to)) {
+    link.to = retired->anchor;
+    link.to_from_camera = retired->anchor_from_camera * link.to_from_camera;
+    ++steps;
+  }
+  if (link.to == id || !keyframes_.contains(link.to)) return std::nullopt;
+  link.information /= steps;
+  return link;
+}
+
 std::optional<Se3> Map::resolve(const AnchoredPose& pose) const {
   const auto living = reanchor(pose);
   if (!living) return std::nullopt;
@@ -94,7 +109,7 @@ void Map::apply_one(const RemoveKeyframe& op) {
   const Keyframe* anchor = keyframes_.find(op.anchor);
   if (!keyframe || !anchor || op.id == op.anchor) return;
   *retired_.edit(op.id) = {op.anchor, anchor->world_from_camera.inverse() * keyframe->world_from_camera,
-                           keyframe->patches};
+                           keyframe->patches, op.replaced};
   const std::vector<LandmarkId> observed = keyframe->landmarks;
   for (const LandmarkId landmark : observed) {
     if (landmark.valid()) apply_one(RemoveObservation{landmark, op.id});

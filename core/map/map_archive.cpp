@@ -60,6 +60,9 @@ const char* wrong_with_landmarks(const Map& map) {
 const char* wrong_with_planes(const Map& map) {
   const char* wrong = nullptr;
   map.planes().for_each([&](PlaneId, const MappedPlane& plane) {
+    const auto nowhere = [&map](const PlaneObservation& o) { return map.patch(o) == nullptr; };
+    if (std::any_of(plane.observations.begin(), plane.observations.end(), nowhere))
+      wrong = "a plane seen where nothing was";
     if (plane.other_face.valid() && !map.planes().contains(plane.other_face))
       wrong = "a wall whose other face is missing";
   });

@@ -11,7 +11,7 @@
 namespace vsgraphs {
 
 struct PlaneObservation {
-  KeyframeId keyframe;      // may be retired: its patches still stand where it stood (Map::surfaces)
+  KeyframeId keyframe;      // may be retired: its patches still stand where it stood (Map::patch)
   std::uint16_t patch = 0;  // index into its KeyframeSurfaces
   bool operator==(const PlaneObservation&) const = default;
 };

@@ -16,24 +16,36 @@ void count(std::uint16_t& counter) {
 
 }  // namespace
 
-void PlaneEvidence::count_on(Cell c) {
-  count(cells_[c].on);
-  if (low_.s > high_.s) {
-    low_ = high_ = c;
+void PlaneEvidence::Box::add(Cell c) {
+  if (empty()) {
+    low = high = c;
     return;
   }
-  low_ = {std::min(low_.s, c.s), std::min(low_.t, c.t)};
-  high_ = {std::max(high_.s, c.s), std::max(high_.t, c.t)};
+  low = {std::min(low.s, c.s), std::min(low.t, c.t)};
+  high = {std::max(high.s, c.s), std::max(high.t, c.t)};
+}
+
+void PlaneEvidence::count_on(Cell c) {
+  count(cells_[c].on);
+  box_.add(c);
+  seen_ = true;
+}
+
+void PlaneEvidence::expect(const std::vector<Eigen::Vector3d>& points) {
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector2d at = frame_.coordinates(point);
+    box_.add(cell_at(at.x(), at.y(), cell_m));
+  }
 }
 
 void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
                               const DepthNoise& noise, bool observes_it) {
-  if (!observes_it && low_.s > high_.s) return;  // not seen yet
+  const Box before = box_;                     // a surface that goes on from it must not draw it along
+  if (!observes_it && before.empty()) return;  // not seen yet
   const double from_camera = plane.signed_distance(world_from_camera.translation());
   if (from_camera < 0.1 || from_camera > max_range_m)
     return;  // seen from behind, from within, or out of reach
   const Eigen::Vector3d normal = world_from_camera.rotation().transpose() * plane.normal;
-  constexpr int own_margin = static_cast<int>(own_margin_m / cell_m);
   std::vector<Cell> passed;
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = r % 2; c < grid.columns; c += 2) {
@@ -54,14 +66,14 @@ void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid,
       const Cell cell = cell_at(at.x(), at.y(), cell_m);
       if (!on)
         passed.push_back(cell);
-      else if (observes_it || near_box(cell, own_margin))
+      else if (observes_it || before.near(cell, own_margin))
         count_on(cell);
     }
   }
-  if (low_.s > high_.s) return;
+  if (box_.empty()) return;
   constexpr int margin = static_cast<int>(margin_m / cell_m);
   for (const Cell& c : passed) {
-    if (near_box(c, margin)) count(cells_[c].through);
+    if (box_.near(c, margin)) count(cells_[c].through);
   }
 }
 

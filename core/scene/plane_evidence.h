@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/map/depth_grid.h"
@@ -28,6 +29,8 @@ class PlaneEvidence {
   // Cost: the grid's samples, every other one of each row.
   void integrate(const AnchoredPlane& plane, const DepthGrid& grid, const Se3& world_from_camera,
                  const DepthNoise& noise, bool observes_it = true);
+  // The plane was seen here, by keyframes whose rays may not be told: points (world).
+  void expect(const std::vector<Eigen::Vector3d>& points);
   // Takes over what was counted for a plane that turned out to be the same.
   void add(const PlaneEvidence& other);
 
@@ -38,6 +41,8 @@ class PlaneEvidence {
 
   const PlaneFrame& frame() const { return frame_; }
   const CellGrid<CellEvidence>& cells() const { return cells_; }
+  // No ray ended on it yet.
+  bool unseen() const { return !seen_; }
   // Seen as surface, and not rather as a hole.
   bool solid(Cell c) const {
     const CellEvidence e = cells_.at(c);
@@ -57,19 +62,25 @@ class PlaneEvidence {
  private:
   static constexpr int min_on = 2, min_through = 2;
   static constexpr double margin_m = 1.0;
-  static constexpr double own_margin_m =
-      0.3;  // a keyframe that does not observe the plane adds surface up to here
+  static constexpr int own_margin =
+      3;  // cells up to which a keyframe that does not observe the plane adds surface
 
   PlaneFrame frame_;
   CellGrid<CellEvidence> cells_;
-  // Bounding box of `on` cells; empty while low > high.
-  Cell low_{1, 1}, high_{0, 0};
+  // Bounding box of the cells where it was seen; empty while low > high.
+  struct Box {
+    Cell low{1, 1}, high{0, 0};
+    bool empty() const { return low.s > high.s; }
+    void add(Cell c);
+    // Within this many cells of it.
+    bool near(Cell c, int margin) const {
+      return c.s >= low.s - margin && c.s <= high.s + margin && c.t >= low.t - margin &&
+             c.t <= high.t + margin;
+    }
+  };
+  Box box_;
+  bool seen_ = false;
   void count_on(Cell c);
-  // Within this many cells of the box.
-  bool near_box(Cell c, int margin) const {
-    return c.s >= low_.s - margin && c.s <= high_.s + margin && c.t >= low_.t - margin &&
-           c.t <= high_.t + margin;
-  }
 };
 
 }  // namespace vsgraphs

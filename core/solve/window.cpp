@@ -55,11 +55,9 @@ void gather_fixed(const Map& map, Window& window, int max_fixed) {
 // Keyframes that tracked links chain to the window's, as those may share no landmark with it.
 void add_linked(const Map& map, Window& window, int max_free) {
   for (std::size_t i = 0; i < window.free.size() && static_cast<int>(window.free.size()) < max_free; ++i) {
-    const auto& link = map.keyframes().find(window.free[i])->tracked_link;
-    if (!link) continue;
-    const auto living = map.reanchor({link->to, Se3{}});
-    if (living && std::find(window.free.begin(), window.free.end(), living->keyframe) == window.free.end()) {
-      window.free.push_back(living->keyframe);
+    const auto link = map.living_link(window.free[i]);
+    if (link && std::find(window.free.begin(), window.free.end(), link->to) == window.free.end()) {
+      window.free.push_back(link->to);
     }
   }
 }
@@ -113,18 +111,16 @@ void build_tracked_links(const Map& map, const Window&, const MeasurementModel& 
   if (!model.factors.tracked_link) return;
   const std::vector<int> pose_of = pose_positions(map, problem);
   for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i) {
-    const auto& link = map.keyframes().find(problem.keyframe_of_pose[i])->tracked_link;
-    if (!link) continue;
-    const auto to = map.reanchor({link->to, link->to_from_camera});
-    const int other = to ? pose_of[to->keyframe.index] : -1;
-    if (other < 0 || other == static_cast<int>(i)) continue;
+    const auto link = map.living_link(problem.keyframe_of_pose[i]);
+    const int other = link ? pose_of[link->to.index] : -1;
+    if (other < 0) continue;
     const bool both_fixed =
         problem.bundle.pose_fixed[i] && problem.bundle.pose_fixed[static_cast<std::size_t>(other)];
     if (both_fixed) continue;
     constexpr double huber_sigmas = 3.5;  // 95 % of a chi with six degrees of freedom
     problem.bundle.factors.push_back(std::make_unique<RelativePose>(
         VariableRef{VariableKind::pose, other}, VariableRef{VariableKind::pose, static_cast<int>(i)},
-        to->keyframe_from_camera, square_root(link->information), Huber{huber_sigmas}));
+        link->to_from_camera, square_root(link->information), Huber{huber_sigmas}));
   }
 }
 

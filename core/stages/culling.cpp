@@ -1,6 +1,7 @@
 #include "core/stages/culling.h"
 
 #include <algorithm>
+#include <set>
 
 namespace vsgraphs {
 
@@ -100,12 +101,15 @@ void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft)
   bool all = true;
   draft.map().planes().for_each([&](PlaneId plane_id, const MappedPlane& plane) {
     std::vector<PlaneObservation> own;
+    std::set<KeyframeId> others;  // one keyframe may have several patches on a plane
     for (const PlaneObservation& o : plane.observations) {
-      if (o.keyframe == id) own.push_back(o);
+      if (o.keyframe == id)
+        own.push_back(o);
+      else
+        others.insert(o.keyframe);
     }
-    const std::size_t others = plane.observations.size() - own.size();
     if (own.empty()) return;
-    if (others < static_cast<std::size_t>(options.redundant_witnesses)) {
+    if (others.size() < static_cast<std::size_t>(options.redundant_witnesses)) {
       all = false;
       return;
     }
@@ -118,16 +122,21 @@ void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft)
   for (const auto& [plane, observation] : forgotten) draft.record(RemovePlaneObservation{plane, observation});
 }
 
-// Where frames and links that hang on a keyframe go when it does; invalid if there is nowhere.
+// Where frames and links that hang on a keyframe go when it does; invalid if there is nowhere. Never one that is linked to it, which
+// would hang on itself then.
 KeyframeId successor(const Map& map, KeyframeId id, KeyframeId made_before) {
-  const auto neighbours = map.covisible(id, 1);
-  if (!neighbours.empty()) return neighbours.front().first;
-  // Tracking measured this step; that the camera came back is only what the map makes of all steps since.
-  if (const auto& link = map.keyframes().find(id)->tracked_link) {
-    const auto living = map.reanchor({link->to, Se3{}});
-    if (living && living->keyframe != id) return living->keyframe;
+  constexpr int firmly_shared = 15;  // landmarks
+  const auto may = [&](KeyframeId other) {
+    const auto link = map.living_link(other);
+    return !link || link->to != id;
+  };
+  const auto link = map.living_link(id);
+  for (const auto& [neighbour, shared] : map.covisible(id, link ? firmly_shared : 1)) {
+    if (may(neighbour)) return neighbour;
   }
-  return made_before;
+  // Tracking measured this step; that the camera came back is only what the map makes of all steps since.
+  if (link && may(link->to)) return link->to;
+  return made_before.valid() && may(made_before) ? made_before : KeyframeId{};
 }
 
 bool may_be_revisit(const CullingOptions& options, const Keyframe& keyframe, const WitnessedShares& shares) {
@@ -154,7 +163,7 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
     const KeyframeId anchor = successor(map, id, before);
     if (!anchor.valid()) continue;
     if (before.valid()) forget_surfaces(options, id, draft);
-    draft.record(RemoveKeyframe{id, anchor});
+    draft.record(RemoveKeyframe{id, anchor, before.valid()});
   }
 }
 

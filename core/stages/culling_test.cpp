@@ -278,6 +278,31 @@ TEST_F(RevisitCullingTest, WhatRetiredOnesSawOfPlanesCounts) {
   EXPECT_EQ(after.retired_keyframes().find(at(4))->patches, nullptr);
 }
 
+TEST_F(RevisitCullingTest, OneOtherKeyframeWithManyPatchesIsOneWitness) {
+  observe_all();
+  const PlaneId plane = add_plane({4});
+  auto surfaces = std::make_shared<KeyframeSurfaces>();
+  surfaces->patches.resize(3);
+  map_.apply(SetPatches{at(0), surfaces});
+  for (std::uint16_t patch = 0; patch < 3; ++patch) map_.apply(AddPlaneObservation{plane, {at(0), patch}});
+  EXPECT_EQ(after_culling(4).planes().find(plane)->observations.size(), 4U);
+}
+
+TEST_F(RevisitCullingTest, NoKeyframeIsLeftHangingOnItself) {
+  // The keyframe that goes shares most with one whose link leads to it.
+  Keyframe next = keyframe_seeing(camera_, standing_at(0.45), points_);
+  next.tracked_link = TrackedLink{at(4), standing_at(0.05), Matrix6d::Identity()};
+  add(next);
+  observe_all();
+  for (int k = 0; k < 4; ++k) unobserve(k, 1);
+  const Map after = after_culling(4);
+  const auto link = after.living_link(at(5));
+  ASSERT_TRUE(link);
+  EXPECT_NE(link->to, at(5));
+  EXPECT_NEAR(after.resolve({link->to, link->to_from_camera})->translation().x(), 0.45, 1e-12);
+  EXPECT_DOUBLE_EQ(link->information(0, 0), 0.5) << "two steps";
+}
+
 TEST_F(RevisitCullingTest, WhatFewSeeOfPlanesStays) {
   observe_all();
   const PlaneId common = add_plane({0, 1, 2, 4}), rare = add_plane({0, 4});

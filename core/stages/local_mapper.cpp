@@ -63,10 +63,7 @@ void LocalMapper::take_over_observations(const KeyframeRequest& request, Keyfram
 std::vector<KeyframeId> LocalMapper::neighbours_of(const Map& map, KeyframeId keyframe, int count) const {
   constexpr int min_shared = 10;
   std::vector<KeyframeId> result;
-  if (const auto& link = map.keyframes().find(keyframe)->tracked_link) {
-    const auto living = map.reanchor({link->to, Se3{}});
-    if (living && living->keyframe != keyframe) result.push_back(living->keyframe);
-  }
+  if (const auto link = map.living_link(keyframe)) result.push_back(link->to);
   for (const auto& [id, shared] : map.covisible(keyframe, min_shared)) {
     if (static_cast<int>(result.size()) >= count) break;
     if (result.empty() || id != result.front()) result.push_back(id);
@@ -85,7 +82,7 @@ void LocalMapper::refresh_appearance(KeyframeId keyframe, Draft& draft) const {
   }
 }
 
-// Keyframes held by surfaces share no landmarks, so that no window holds them: the last few before this one.
+// Keyframes held by surfaces share no landmarks: where the newest has no link to them no window holds them. The last few before it.
 void LocalMapper::add_linked(const Map& map, KeyframeId keyframe, std::vector<KeyframeId>& candidates) const {
   constexpr int looked_at = 12;
   int seen = 0;

@@ -21,10 +21,8 @@ MappedPlace place_around(const Map& map, KeyframeId centre, int max_keyframes) {
   constexpr int min_shared = 15;
   MappedPlace place{centre, {centre}};
   // Where landmarks are rare the link may be all that ties it to its neighbour.
-  if (const auto& link = map.keyframes().find(centre)->tracked_link; link && max_keyframes > 1) {
-    const auto to = map.reanchor({link->to, Se3{}});
-    if (to && to->keyframe != centre) place.keyframes.push_back(to->keyframe);
-  }
+  if (const auto link = map.living_link(centre); link && max_keyframes > 1)
+    place.keyframes.push_back(link->to);
   for (const auto& [id, shared] : map.covisible(centre, min_shared)) {
     if (static_cast<int>(place.keyframes.size()) >= max_keyframes) break;
     if (std::find(place.keyframes.begin(), place.keyframes.end(), id) == place.keyframes.end())

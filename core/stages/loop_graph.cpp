@@ -108,13 +108,11 @@ class Builder {
 
   void add_links() {
     for (int b = 0; b < static_cast<int>(graph_.keyframes.size()); ++b) {
-      const auto& link = keyframe(b).tracked_link;
-      if (!link) continue;
-      const auto to = map_.reanchor({link->to, link->to_from_camera});
-      const int a = to ? graph_.position_of(to->keyframe) : -1;
-      if (a < 0 || a == b) continue;
+      const auto link = map_.living_link(graph_.keyframes[static_cast<std::size_t>(b)]);
+      const int a = link ? graph_.position_of(link->to) : -1;
+      if (a < 0) continue;
       graph_.edges.push_back(
-          {a, b, 0, to->keyframe_from_camera, link_covariance(options_, *link, to->keyframe_from_camera)});
+          {a, b, 0, link->to_from_camera, link_covariance(options_, *link, link->to_from_camera)});
       join(a, b);
     }
   }

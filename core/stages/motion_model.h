@@ -18,8 +18,9 @@ class MotionModel {
     return world_from_last.retract(twist_per_s_ * std::min(seconds, max_extrapolation_s));
   }
 
-  // `information`: what was measured of the two poses (tangent on their right), the inverse of their covariance. A velocity is a
-  // difference of poses: what a few matches say of it is mostly noise, and what only a prediction held says nothing.
+  // `information`: what was measured of the pose now (tangent on its right), the inverse of its covariance; that of the previous pose
+  // is remembered. A velocity is a difference of poses: what a few matches say of it is mostly noise, and where only a prediction held
+  // one of the two it says nothing.
   void update(const Se3& world_from_previous, const Se3& world_from_now, double seconds,
               const Matrix6d& information) {
     if (seconds <= 0) return;
@@ -30,7 +31,10 @@ class MotionModel {
       covariance_ = fading * fading * covariance_;
       covariance_.diagonal() += seconds * acceleration();
     }
-    const Matrix6d gained = 0.5 * seconds * seconds * information;
+    const Matrix6d known = information + nothing_known();
+    const Matrix6d gained =
+        seconds * seconds * inverse6(inverse6(known) + inverse6(known_ ? previous_information_ : known));
+    previous_information_ = known;
     covariance_ = inverse6(inverse6(covariance_) + gained);
     twist_per_s_ += covariance_ * gained * (measured - twist_per_s_);
     known_ = true;
@@ -47,7 +51,11 @@ class MotionModel {
     return (Vector6d() << 0.8, 0.8, 0.8, 3, 3, 3).finished();
   }  // m^2/s^3, rad^2/s^3
 
+  // 10 m, 10 rad: keeps what no measurement holds invertible.
+  static Matrix6d nothing_known() { return 0.01 * Matrix6d::Identity(); }
+
   bool known_ = false;
+  Matrix6d previous_information_ = Matrix6d::Zero();
   Vector6d twist_per_s_ = Vector6d::Zero();
   Matrix6d covariance_ = 4.0 * Matrix6d::Identity();  // of a camera of which nothing is known: 2 m/s, 2 rad/s
 };

@@ -91,5 +91,17 @@ TEST(MotionModel, AVelocityFromNoisyPosesIsSmoothedAndASharpOneFollowed) {
   EXPECT_GT(last_velocity(0.0001), 0.14);
 }
 
+TEST(MotionModel, TheJumpThatEndsAStretchOfPredictionsIsNoVelocity) {
+  Matrix6d height_unknown = 1e6 * Matrix6d::Identity();
+  height_unknown(1, 1) = 0;
+  MotionModel motion;
+  Se3 pose;
+  for (int i = 0; i < 30; ++i) motion.update(pose, pose, 1.0 / 30, height_unknown);
+  Vector6d jump = Vector6d::Zero();
+  jump[1] = 0.08;
+  motion.update(pose, pose * Se3::exp(jump), 1.0 / 30, 1e6 * Matrix6d::Identity());
+  EXPECT_LT(motion.predict(Se3{}, 1.0 / 30).translation().norm(), 0.002);
+}
+
 }  // namespace
 }  // namespace vsgraphs

@@ -118,6 +118,21 @@ void SceneBuilder::find_up_direction(Draft& draft) const {
   if (up && (!map.up_in_world() || up->cross(*map.up_in_world()).norm() > 1e-3)) draft.record(SetUp{*up});
 }
 
+namespace {
+
+// Where a plane was seen, by keyframes that live or are retired; world.
+std::vector<Eigen::Vector3d> seen_points(const Map& map, const MappedPlane& plane) {
+  std::vector<Eigen::Vector3d> points;
+  for (const PlaneObservation& o : plane.observations) {
+    const Se3 world_from_camera = *map.resolve({o.keyframe, Se3{}});
+    for (const Eigen::Vector3f& p : map.patch(o)->points)
+      points.push_back(world_from_camera * p.cast<double>());
+  }
+  return points;
+}
+
+}  // namespace
+
 void SceneBuilder::gather_evidence(KeyframeId keyframe, const Map& map) {
   const Keyframe& seen = *map.keyframes().find(keyframe);
   if (!seen.surface) return;
@@ -126,6 +141,7 @@ void SceneBuilder::gather_evidence(KeyframeId keyframe, const Map& map) {
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
     auto [at, fresh] = evidence_.try_emplace(id, frame_of(plane.plane, map.up_in_world()));
     if (again && !fresh) return;
+    if (fresh) at->second.expect(seen_points(map, plane));
     const bool observes_it =
         std::any_of(plane.observations.begin(), plane.observations.end(),
                     [keyframe](const PlaneObservation& o) { return o.keyframe == keyframe; });
@@ -177,7 +193,8 @@ RoleVotes SceneBuilder::segmenter_votes(const Map& map, const MappedPlane& plane
   RoleVotes votes{};
   for (const PlaneObservation& o : plane.observations) {
     const SurfacePatch& patch = *map.patch(o);
-    const float share = patch.area_m2 / seen_m2.at(o.keyframe);
+    const float all = seen_m2.at(o.keyframe);
+    const float share = all > 0 ? patch.area_m2 / all : 0;
     for (std::size_t r = 0; r < surface_role_count; ++r) votes[r] += share * patch.votes[r];
   }
   return votes;
@@ -193,7 +210,8 @@ void SceneBuilder::classify(const std::vector<PlaneId>& candidates, Draft& draft
   for (const PlaneId id : order) {
     const MappedPlane& plane = *draft.map().planes().find(id);
     const auto evidence = evidence_.find(id);
-    if (evidence == evidence_.end()) continue;
+    // Nobody alive sees a plane that was loaded: it stays what it was.
+    if (evidence == evidence_.end() || evidence->second.unseen()) continue;
     RoleVotes votes = segmenter_votes(draft.map(), plane);
     SurfaceRole geometric =
         role_by_geometry(facts_of(draft.map(), plane), evidence->second, up, options_.role);

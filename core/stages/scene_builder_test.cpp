@@ -119,6 +119,20 @@ TEST_F(SceneBuilderTest, VotesChangeAClassAndItCanBeLostAgain) {
   EXPECT_EQ(role_at({0, 3, 1}, south), SurfaceRole::wall);
 }
 
+TEST_F(SceneBuilderTest, AWallWhoseObserversAreAllRetiredStaysOneForABuilderThatStartsAnew) {
+  walk();
+  const PlaneId wall = planes_at({0, 3, 1}, south)[0];
+  std::vector<KeyframeId> seen;
+  for (const PlaneObservation& o : plane(wall).observations) seen.push_back(o.keyframe);
+  const KeyframeId stays = see(looking({0, 0, 1.4}, {0, -3, 0.7}));
+  for (const KeyframeId id : seen) map.apply(RemoveKeyframe{id, stays});
+  builder = SceneBuilder(SceneBuilderOptions{}, camera);
+  see(looking({0.3, 0, 1.4}, {0.3, -3, 0.7}));
+  EXPECT_EQ(plane(wall).role, SurfaceRole::wall) << "nobody alive sees it";
+  for (const double x : {-0.3, 0.3}) see(looking({x, 0, 1.4}, {x, 3, 0.7}));
+  EXPECT_EQ(role_at({0, 3, 1}, south), SurfaceRole::wall);
+}
+
 TEST_F(SceneBuilderTest, ManySmallPostersDoNotOutvoteTheirWall) {
   walk();
   LabelGrid labels = all_labelled(SurfaceRole::wall, 0.9F);

@@ -76,7 +76,7 @@ void StructureBuilder::carve(const Map& map, const Se3& level_from_world, bool l
   std::vector<KeyframeId> forgotten;
   for (const auto& [id, view] : free_space_.views()) {
     const RetiredKeyframe* retired = map.retired_keyframes().find(id);
-    if (retired && retired->anchor.valid() && !retired->patches) forgotten.push_back(id);
+    if (retired && retired->replaced) forgotten.push_back(id);
   }
   for (const KeyframeId id : forgotten) free_space_.remove(id);
   std::vector<KeyframePose> poses;

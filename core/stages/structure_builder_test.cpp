@@ -43,10 +43,9 @@ TEST_F(CarvingTest, WhatACulledKeyframeCarvedStays) {
   EXPECT_THAT(carved(), testing::ElementsAreArray(keyframes_));
 }
 
-TEST_F(CarvingTest, UnlessItWasCulledWithItsPatches) {
+TEST_F(CarvingTest, UnlessOthersReplaceIt) {
   ASSERT_THAT(carved(), testing::ElementsAreArray(keyframes_));
-  map_.apply(SetPatches{keyframes_[1], nullptr});
-  map_.apply(RemoveKeyframe{keyframes_[1], keyframes_[0]});
+  map_.apply(RemoveKeyframe{keyframes_[1], keyframes_[0], true});
   EXPECT_THAT(carved(), testing::ElementsAre(keyframes_[0], keyframes_[2]));
   StructureBuilder anew{StructureBuilderOptions{}};
   anew.propose(map_.snapshot(), 0, true, nullptr);

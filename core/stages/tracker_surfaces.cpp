@@ -53,8 +53,10 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
     match_local_map(map, first.solution.world_from_camera, options_.local_search_radius_px);
     return hold_by_surfaces(map, reference, first.solution.world_from_camera, prior, seconds);
   }
+  const FrameMatches matches = matches_;
   const auto held = hold_by_surfaces(map, reference, guess, prior, seconds);
   if (held) return held;
+  matches_ = matches;
   // A few matches that the surfaces contradict are a coincidence.
   const DepthAlignment judged = aligner_.judge(surface_now(), reference, guess);
   return judged.contradicts() ? std::nullopt : pose;

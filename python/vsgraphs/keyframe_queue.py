@@ -14,7 +14,8 @@ class KeyframeQueue(Generic[Item]):
     """Calls `work` with each item put in, on a thread called `name`; beside=False: within `put`.
 
     When more than `waiting` items wait, the oldest is dropped. newest_first: which of them is next. What
-    `work` raises ends the work: on the thread it is kept for `take_failure`, within `put` it is raised there.
+    `work` raises on the thread ends the work and is kept for `take_failure`; what waits or still comes
+    counts as dropped. Within `put` it is raised there, and the next `put` works on.
     All methods belong to the caller's thread, except `discard`, `waiting` and `left_behind`, which `work`
     may use too. Raises ValueError where `waiting` is less than 1.
     """
@@ -48,6 +49,7 @@ class KeyframeQueue(Generic[Item]):
             return
         with self._changed:
             if self._stopping:
+                self._dropped += 1
                 return
             self._items.append(item)
             if len(self._items) > self._most:
@@ -63,7 +65,7 @@ class KeyframeQueue(Generic[Item]):
 
     @property
     def dropped(self) -> int:
-        """Items nobody worked on because others were newer or the end came, and one left behind."""
+        """Items nobody worked on: others were newer, work had failed or ended; and one left behind."""
         with self._changed:
             return self._dropped
 
@@ -123,5 +125,6 @@ class KeyframeQueue(Generic[Item]):
                 self._busy = False
                 if failure is not None:
                     self._failure, self._stopping = failure, True
+                    self._dropped += len(self._items)
                     self._items.clear()
                 self._changed.notify_all()
