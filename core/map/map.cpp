@@ -6,28 +6,35 @@
 
 namespace vsgraphs {
 
-std::optional<AnchoredPose> Map::reanchor(AnchoredPose pose) const {
-  while (!keyframes_.contains(pose.keyframe)) {
-    const RetiredKeyframe* retired = retired_.find(pose.keyframe);
+namespace {
+
+// Goes on from a culled anchor to what that hangs on, until one lives; how many steps that takes. Empty if one never existed.
+std::optional<int> go_on_to_living(const Map& map, AnchoredPose& pose) {
+  int steps = 0;
+  while (!map.keyframes().contains(pose.keyframe)) {
+    const RetiredKeyframe* retired = map.retired_keyframes().find(pose.keyframe);
     if (!retired) return std::nullopt;
     pose = {retired->anchor, retired->anchor_from_camera * pose.keyframe_from_camera};
+    ++steps;
   }
+  return steps;
+}
+
+}  // namespace
+
+std::optional<AnchoredPose> Map::reanchor(AnchoredPose pose) const {
+  if (!go_on_to_living(*this, pose)) return std::nullopt;
   return pose;
 }
 
 std::optional<TrackedLink> Map::living_link(KeyframeId id) const {
   const Keyframe* keyframe = keyframes_.find(id);
   if (!keyframe || !keyframe->tracked_link) return std::nullopt;
-  TrackedLink link = *keyframe->tracked_link;
-  int steps = 1;
-  while (const RetiredKeyframe* retired = keyframes_.contains(link.to) ? nullptr : retired_.find(link.to)) {
-    link.to = retired->anchor;
-    link.to_from_camera = retired->anchor_from_camera * link.to_from_camera;
-    ++steps;
-  }
-  if (link.to == id || !keyframes_.contains(link.to)) return std::nullopt;
-  link.information /= steps;
-  return link;
+  const TrackedLink& link = *keyframe->tracked_link;
+  AnchoredPose pose{link.to, link.to_from_camera};
+  const auto steps = go_on_to_living(*this, pose);
+  if (!steps || pose.keyframe == id) return std::nullopt;
+  return TrackedLink{pose.keyframe, pose.keyframe_from_camera, link.information / (1 + *steps)};
 }
 
 std::optional<Se3> Map::resolve(const AnchoredPose& pose) const {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/map/test_depth_row.h"
 #include "core/map/test_map.h"
 
 namespace vsgraphs {
@@ -14,12 +15,7 @@ class CarvingTest : public ::testing::Test {
   CarvingTest() {
     for (int k = 0; k < 3; ++k) {
       Keyframe keyframe = test::keyframe_seeing({}, test::standing_at(0.5 * k), test::point_grid(3, 2));
-      DepthGrid grid;
-      grid.columns = 4;
-      grid.rows = 1;
-      for (int s = 0; s < 4; ++s)
-        grid.samples.push_back({{0.2F * static_cast<float>(s), 0, 2}, -Eigen::Vector3f::UnitZ()});
-      keyframe.surface = std::make_shared<const DepthGrid>(std::move(grid));
+      keyframe.surface = test::depth_row();
       keyframes_.push_back(test::add_keyframe(map_, keyframe));
       map_.apply(SetPatches{keyframes_.back(), std::make_shared<const KeyframeSurfaces>()});
     }

@@ -6,6 +6,7 @@
 #include "core/base/check.h"
 #include "core/base/rng.h"
 #include "core/base/test_archive.h"
+#include "core/map/test_depth_row.h"
 #include "core/map/test_map.h"
 
 namespace vsgraphs {
@@ -21,12 +22,7 @@ MapState some_map(int first_name) {
   auto space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
   for (int i = 0; i < 3; ++i) {
     Keyframe keyframe = test::keyframe_seeing(camera, test::standing_at(0.2 * i), points, first_name);
-    DepthGrid grid;
-    grid.columns = 4;
-    grid.rows = 1;
-    for (int s = 0; s < 4; ++s)
-      grid.samples.push_back({{0.2F * static_cast<float>(s), 0, 2}, -Eigen::Vector3f::UnitZ()});
-    keyframe.surface = std::make_shared<const DepthGrid>(std::move(grid));
+    keyframe.surface = test::depth_row();
     keyframes.push_back(test::add_keyframe(map, keyframe));
     places->add(keyframes.back(), *keyframe.features);
     space->integrate(keyframes.back(), keyframe.surface, keyframe.world_from_camera);
