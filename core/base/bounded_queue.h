@@ -24,6 +24,15 @@ class BoundedQueue {
     return true;
   }
 
+  // Does not wait: false as well where there is no room.
+  bool try_push(T value) {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || items_.size() >= capacity_) return false;
+    items_.push_back(std::move(value));
+    changed_.notify_all();
+    return true;
+  }
+
   // Waits for a value; empty once the queue is closed and drained.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);

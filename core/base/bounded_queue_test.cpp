@@ -21,6 +21,17 @@ TEST(BoundedQueue, HandsOverInOrderThroughASmallBound) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(got[static_cast<std::size_t>(i)], i);
 }
 
+TEST(BoundedQueue, WhoMustNotWaitIsToldThatThereIsNoRoom) {
+  BoundedQueue<int> queue(1);
+  EXPECT_TRUE(queue.try_push(1));
+  EXPECT_FALSE(queue.try_push(2));
+  EXPECT_EQ(queue.pop(), 1);
+  EXPECT_TRUE(queue.try_push(3));
+  EXPECT_EQ(queue.pop(), 3);
+  queue.close();
+  EXPECT_FALSE(queue.try_push(4));
+}
+
 TEST(BoundedQueue, ClosingWakesAProducerThatWaits) {
   BoundedQueue<int> queue(1);
   EXPECT_TRUE(queue.push(1));

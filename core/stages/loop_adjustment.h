@@ -1,9 +1,10 @@
-// The joint problem over the whole map, for the background after a loop: in slices, so that whoever runs it can stop between
-// two iterations, look whether the map has moved on, and go on or give up.
+// The joint problem over the whole map, for the background after a loop: worked out on the map as it was when it was asked
+// for, while the map moves on; rebase() says the result anew for the map it meets.
 #pragma once
 
 #include <functional>
 
+#include "core/base/trace.h"
 #include "core/map/draft.h"
 #include "core/solve/window.h"
 
@@ -12,31 +13,28 @@ namespace vsgraphs {
 // Every keyframe but the oldest free, every landmark in.
 Window whole_map(const Map& map);
 
+// Made on one thread, run on another, taken back by the first.
 class FullAdjustment {
  public:
-  // `settle_iterations`: done before outliers are dropped. Memory: about 100 bytes per observation.
-  FullAdjustment(Snapshot snapshot, const MeasurementModel& model, int settle_iterations = 5);
+  FullAdjustment(Snapshot snapshot, const MeasurementModel& model,
+                 const BundleOptions& options = {.max_iterations = 5, .iterations_before_dropping = 5});
 
-  // Does at most `iterations` more; `stop` is asked before each. False when there is nothing left to gain or it was told to
-  // stop. Cost per iteration: linear in the observations, and the sparse factorisation of the keyframes.
-  bool advance(int iterations, const std::function<bool()>& stop = {});
+  // Once. `stop` is asked before each iteration; false, and nothing to show for it, where it said so. Cost per iteration:
+  // linear in the observations, and the sparse factorisation of the keyframes. Memory: about 100 bytes per observation.
+  bool run(const std::function<bool()>& stop = {}, TraceSink* trace = nullptr);
 
-  int iterations() const { return iterations_; }
-  const SolveReport& report() const { return report_; }  // of the last slice
-  // What it has come to so far, based on the snapshot it was given; see rebase() if the map has moved on.
+  const Map& base() const { return *snapshot_; }  // the map it was asked for
+  int iterations() const { return report_.iterations; }
+  // What it came to, based on base(). After run().
   MapEdit edit() const;
 
  private:
-  void drop_outliers();
-
   Snapshot snapshot_;
+  MeasurementModel model_;
+  BundleOptions options_;
   Window window_;
   WindowProblem problem_;
-  std::vector<std::pair<LandmarkId, KeyframeId>> dropped_;
   SolveReport report_;
-  int settle_iterations_;
-  int iterations_ = 0;
-  bool settled_ = false;
 };
 
 }  // namespace vsgraphs

@@ -36,11 +36,9 @@ class Rebaser {
  private:
   // What moves a living keyframe from where it is now to where it shall be, world from world.
   Se3 correction_of(KeyframeId id, const Keyframe& keyframe) const {
-    if (const Keyframe* before = old_.keyframes().find(id)) {
+    if (old_.keyframes().contains(id)) {
       const auto& edited = edited_[id.index];
-      if (!edited) return Se3{};
-      const Se3 since = before->world_from_camera.inverse() * keyframe.world_from_camera;
-      return *edited * since * keyframe.world_from_camera.inverse();
+      return edited ? *edited * keyframe.world_from_camera.inverse() : Se3{};
     }
     return corrections_[anchor_of_new(id, keyframe).index];
   }
@@ -60,21 +58,18 @@ class Rebaser {
     return id;  // the first of all: its correction is still the identity
   }
 
-  // Where a keyframe of the old map, living or retired there, is in the three versions.
-  struct Poses {
-    Se3 old, edited, now, result;
-  };
-  std::optional<Poses> poses_of(KeyframeId id) const {
-    const auto in_old = old_.reanchor({id, Se3{}});
-    const auto in_now = now_.reanchor({id, Se3{}});
-    if (!in_old || !in_now) return std::nullopt;
-    Poses poses;
-    poses.old = *old_.resolve(*in_old);
-    const auto& edited = edited_[in_old->keyframe.index];
-    poses.edited = edited ? *edited * in_old->keyframe_from_camera : poses.old;
-    poses.now = *now_.resolve(*in_now);
-    poses.result = corrections_[in_now->keyframe.index] * poses.now;
-    return poses;
+  // From where the edit has the first keyframe that observed something, living or retired, to where that keyframe ends up.
+  template <typename Observation>
+  std::optional<Se3> way_of_first(const std::vector<Observation>& observations) const {
+    for (const Observation& o : observations) {
+      const auto in_old = old_.reanchor({o.keyframe, Se3{}});
+      const auto in_now = now_.reanchor({o.keyframe, Se3{}});
+      if (!in_old || !in_now) continue;
+      const auto& edited = edited_[in_old->keyframe.index];
+      const Se3 there = edited ? *edited * in_old->keyframe_from_camera : *old_.resolve(*in_old);
+      return corrections_[in_now->keyframe.index] * *now_.resolve(*in_now) * there.inverse();
+    }
+    return std::nullopt;
   }
 
   void say(const AddKeyframe&, std::vector<EditOperation>&) { refuse(); }
@@ -92,47 +87,23 @@ class Rebaser {
 
   void say(const MoveLandmark& op, std::vector<EditOperation>& out) {
     const Landmark* before = old_.landmarks().find(op.id);
-    const Landmark* present = now_.landmarks().find(op.id);
-    if (!before || !present) return;
-    for (const Observation& o : before->observations) {
-      const auto poses = poses_of(o.keyframe);
-      if (!poses) continue;
-      const Eigen::Vector3d change =
-          poses->edited.inverse() * op.point_in_world - poses->old.inverse() * before->point_in_world;
-      out.push_back(
-          MoveLandmark{op.id, poses->result * (poses->now.inverse() * present->point_in_world + change)});
-      return;
-    }
+    if (!before || !now_.landmarks().contains(op.id)) return;
+    if (const auto way = way_of_first(before->observations))
+      out.push_back(MoveLandmark{op.id, *way * op.point_in_world});
   }
 
   void say(const MovePlane& op, std::vector<EditOperation>& out) {
     const MappedPlane* before = old_.planes().find(op.id);
-    const MappedPlane* present = now_.planes().find(op.id);
-    if (!before || !present) return;
-    for (const PlaneObservation& o : before->observations) {
-      const auto poses = poses_of(o.keyframe);
-      if (!poses) continue;
-      const AnchoredPlane was = before->plane.transformed(poses->old.inverse());
-      const AnchoredPlane edited = op.plane.transformed(poses->edited.inverse()).anchored_at(was.anchor);
-      const AnchoredPlane is = present->plane.transformed(poses->now.inverse()).anchored_at(was.anchor);
-      const AnchoredPlane both = is.retract(was.local(edited));
-      out.push_back(MovePlane{op.id, both.transformed(poses->result)});
-      return;
-    }
+    if (!before || !now_.planes().contains(op.id)) return;
+    if (const auto way = way_of_first(before->observations))
+      out.push_back(MovePlane{op.id, op.plane.transformed(*way)});
   }
 
   void say(const MoveMarker& op, std::vector<EditOperation>& out) {
-    const auto before = old_.markers().find(op.id), present = now_.markers().find(op.id);
-    if (before == old_.markers().end() || present == now_.markers().end()) return;
-    for (const MarkerObservation& o : before->second->observations) {
-      const auto poses = poses_of(o.keyframe);
-      if (!poses) continue;
-      const Se3 was = poses->old.inverse() * before->second->world_from_marker;
-      const Se3 change = was.inverse() * (poses->edited.inverse() * op.world_from_marker);
-      const Se3 is = poses->now.inverse() * present->second->world_from_marker;
-      out.push_back(MoveMarker{op.id, (poses->result * is * change).normalized()});
-      return;
-    }
+    const auto before = old_.markers().find(op.id);
+    if (before == old_.markers().end() || !now_.markers().contains(op.id)) return;
+    if (const auto way = way_of_first(before->second->observations))
+      out.push_back(MoveMarker{op.id, (*way * op.world_from_marker).normalized()});
   }
 
   void say(const MergeLandmark& op, std::vector<EditOperation>& out) {
@@ -142,6 +113,14 @@ class Rebaser {
   void say(const MergePlane& op, std::vector<EditOperation>& out) {
     const PlaneId from = now_.planes().resolve(op.id), into = now_.planes().resolve(op.into);
     if (from.valid() && into.valid() && from != into) out.push_back(MergePlane{from, into});
+  }
+  void say(const RemoveObservation& op, std::vector<EditOperation>& out) {
+    const LandmarkId landmark = now_.landmarks().resolve(op.landmark);
+    if (landmark.valid()) out.push_back(RemoveObservation{landmark, op.keyframe});
+  }
+  // Rooms that were found or moved since stay: they are sought again once the map has moved.
+  void say(const MoveStructureNodes& op, std::vector<EditOperation>& out) {
+    if (&now_.structure() == &old_.structure()) out.push_back(op);
   }
   void say(const AddObservation& op, std::vector<EditOperation>& out) {
     const LandmarkId landmark = now_.landmarks().resolve(op.landmark);

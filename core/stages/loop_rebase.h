@@ -5,10 +5,11 @@
 
 namespace vsgraphs {
 
-// A keyframe goes to where the edit put it, with what has happened to it since added in its own frame; landmarks,
-// planes and markers that the edit moved are taken along in the frame of the first keyframe that observed them, their own
-// changes on both sides added up. What was made since is carried by the correction of the keyframe it hangs on (tracked link, else
-// most shared landmarks). Ids that were merged away are followed, those that vanished drop out.
+// What the edit moved stands where the edit put it: it weighed the whole map, and what was worked out since for parts of it, on
+// the ground of the old one, gives way (added up, the two would correct one error twice). Landmarks, planes and markers follow the
+// first keyframe that observed them, should that have been culled. What was made since is carried by the correction of the
+// keyframe it hangs on (tracked link, else most shared landmarks). Ids that were merged away are followed, those that
+// vanished drop out; rooms that were found or moved since stay where they are.
 //
 // If nothing has happened since, the edit is returned as it is. The edit may move, merge, remove, observe and classify; it
 // must not add keyframes, landmarks, planes or markers, as their ids may have been given away (throws InvariantError).

@@ -27,7 +27,7 @@ struct SystemOptions {
   int min_map_keyframes = 5;
   bool builds_scene() const { return mode != "slam"; }
   bool builds_structure() const { return mode == "full"; }
-  int max_waiting_keyframes = 2;
+  double max_lag_s = 0.1;
   std::string schedule_out;
   std::string replay;
 };
@@ -48,8 +48,9 @@ void describe(SystemOptions& o, Visitor& field) {
         "the camera is only located in the loaded maps, which stay as they are");
   field("min_map_keyframes", o.min_map_keyframes, 1, 1000,
         "a map of fewer keyframes is dropped when tracking was lost and a new one begins");
-  field("max_waiting_keyframes", o.max_waiting_keyframes, 1, 50,
-        "unless realtime: tracking waits while more keyframes than this wait for the mapper");
+  field("max_lag_s", o.max_lag_s, 0.0, 10.0,
+        "unless realtime: time of the sequence by which mapping may lag behind tracking, which waits for it "
+        "then");
   field("schedule_out", o.schedule_out, AllowedValues{},
         "file to record a run's schedule in, to replay it exactly");
   field("replay", o.replay, AllowedValues{}, "recorded schedule to follow, edit by edit");

@@ -1,7 +1,7 @@
 #include "core/system/map_owner.h"
 
 #include "core/base/check.h"
-#include "core/stages/loop_adjustment.h"
+#include "core/stages/loop_rebase.h"
 
 namespace vsgraphs {
 
@@ -22,8 +22,7 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
   publish();
 }
 
-void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining,
-                       const std::function<bool()>& stop_adjusting) {
+void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining) {
   insert(request);
   if (options_.builds_scene()) find_planes();
   if (options_.builds_structure() && rooms_due()) find_rooms(false);
@@ -33,11 +32,10 @@ void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool(
     close_loop();
   } else {
     look_for_join();
-    if (!join_found()) return;
-    join_maps();
+    if (join_found()) join_maps();
   }
-  adjust_all(stop_adjusting);
-  if (options_.builds_structure()) find_rooms(false);
+  ++completed_;
+  publish();
 }
 
 void MapOwner::end_run() {
@@ -91,28 +89,51 @@ bool MapOwner::mark(std::int64_t frame_index, const MarkerDetections& detections
 }
 
 void MapOwner::look_for_loop() {
-  loop_edit_.reset();
+  loop_.reset();
   if (!options_.loop_closing || !map_.keyframes().contains(newest_)) return;
   const Span span(&spans_, "look_for_loop");
   LoopReport report;
-  loop_edit_ = loop_closer_.close(newest_, snapshot_, places_, report, &spans_);
+  if (auto edit = loop_closer_.close(newest_, snapshot_, places_, report, &spans_))
+    loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
 }
 
 void MapOwner::close_loop() {
-  VSG_INVARIANT(loop_edit_.has_value());
+  VSG_INVARIANT(loop_.has_value());
   ++counts_.loops;
-  apply(*loop_edit_, {EditEvent::Kind::loop, newest_frame_, 0, 0});
-  loop_edit_.reset();
+  apply(loop_->edit, {EditEvent::Kind::loop, newest_frame_, 0, 0});
+  if (loop_->moves_map) drop_adjustment();
+  loop_.reset();
+  adjust_from_here();
 }
 
-void MapOwner::adjust_all(const std::function<bool()>& stop) {
-  constexpr int max_iterations = 10;
-  FullAdjustment adjustment(snapshot_, model_);
-  {
-    const Span span(&spans_, "full_adjustment");
-    adjustment.advance(max_iterations, stop);
-  }
-  apply(adjustment.edit(), {EditEvent::Kind::adjust, newest_frame_, adjustment.iterations(), 0});
+// One that is under way, and still true, is let come to its end: where loop follows loop none ever would.
+void MapOwner::adjust_from_here() {
+  adjust_again_ = adjustment_ != nullptr;
+  if (adjust_again_) return;
+  adjustment_ = std::make_shared<FullAdjustment>(snapshot_, model_);
+  completed_before_adjustment_ = completed_;
+}
+
+void MapOwner::drop_adjustment() {
+  adjustment_.reset();
+  adjust_again_ = false;
+}
+
+void MapOwner::take_in_adjustment() {
+  VSG_INVARIANT(adjustment_ != nullptr);
+  const std::shared_ptr<FullAdjustment> done = std::move(adjustment_);
+  adjustment_ = nullptr;
+  const MapEdit edit = [&] {
+    const Span span(&spans_, "rebase_adjustment");
+    return rebase(done->edit(), done->base(), *snapshot_);
+  }();
+  apply(edit, {EditEvent::Kind::adjust, newest_frame_, done->iterations(), 0});
+  if (adjust_again_) adjust_from_here();
+}
+
+void MapOwner::finish_adjustment() {
+  take_in_adjustment();
+  if (options_.builds_structure()) find_rooms(false);
 }
 
 void MapOwner::find_rooms(bool last) {
@@ -142,7 +163,8 @@ void MapOwner::apply(const MapEdit& edit, EditEvent event) {
 void MapOwner::publish() {
   if (follow(*snapshot_, places_) || !published_places_)
     published_places_ = std::make_shared<const PlaceIndex>(places_);
-  cell_.publish({snapshot_, inserted_, published_places_, published_dormant_, counts_});
+  const std::int64_t completed = adjustment_ ? completed_before_adjustment_ : completed_;
+  cell_.publish({snapshot_, inserted_, completed, published_places_, published_dormant_, counts_});
 }
 
 }  // namespace vsgraphs

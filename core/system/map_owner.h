@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "core/stages/local_mapper.h"
+#include "core/stages/loop_adjustment.h"
 #include "core/stages/scene_builder.h"
 #include "core/stages/structure_builder.h"
 #include "core/system/config.h"
@@ -24,10 +25,9 @@ class MapOwner {
   // The last of `known` is worked on; maps without keyframes are none.
   MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known = {});
 
-  // All that a keyframe brings about, in the order of the steps below. The two functions are asked between iterations of the
-  // window's and of the whole map's adjustment.
-  void work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining,
-               const std::function<bool()>& stop_adjusting);
+  // All that a keyframe brings about, in the order of the steps below; `stop_refining` is asked between iterations of the
+  // window's adjustment. Afterwards adjustment() is what the executor has to run, here or beside.
+  void work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining);
   // At the end of the run: the map this run made most of is the one given out, with its rooms.
   void end_run();
 
@@ -36,15 +36,22 @@ class MapOwner {
   void insert(const KeyframeRequest& request);
   void find_planes();
   // After refine(): does the newest keyframe show a place mapped before? If so, close_loop() takes the drift since then
-  // out, and adjust_all() brings the whole map to its optimum.
+  // out and asks for the whole map to be adjusted.
   void look_for_loop();
-  bool loop_found() const { return loop_edit_.has_value(); }
+  bool loop_found() const { return loop_.has_value(); }
   void close_loop();
-  void adjust_all(const std::function<bool()>& stop);
-  // Where no loop was found: or a place of a dormant map? Then join_maps() makes one of the two, and adjust_all() follows.
+  // Where no loop was found: or a place of a dormant map? Then join_maps() makes one of the two and asks for the same.
   void look_for_join();
   bool join_found() const { return join_.has_value(); }
   void join_maps();
+  // The adjustment of the whole map to be run, any time and on any thread, while the steps above go on; null: none. It is
+  // another one, or none, once a loop has moved the map or another map is worked on. When it has run, take_in_adjustment()
+  // brings what it came to into the map as it is by then.
+  const std::shared_ptr<FullAdjustment>& adjustment() const { return adjustment_; }
+  void run_adjustment() { adjustment_->run({}, &spans_); }  // on the owner's thread
+  void take_in_adjustment();
+  // With the rooms of the adjusted map.
+  void finish_adjustment();
   // The part of insert() that makes the request's map the one worked on. False if it is already.
   bool choose_map(const KeyframeRequest& request);
   // The part of end_run() that does the same with the map this run made most of.
@@ -71,6 +78,10 @@ class MapOwner {
     int made = 0;  // keyframes of this run
     bool loaded = false;
   };
+  struct FoundLoop {
+    MapEdit edit;
+    bool moves_map = false;
+  };
   struct FoundJoin {
     std::size_t dormant = 0;
     MapJoin join;
@@ -84,6 +95,8 @@ class MapOwner {
   void wake(std::size_t dormant, EditEvent::Kind why, std::int64_t frame);
   void open_new_map(std::int64_t frame);
   void publish_dormant();
+  void adjust_from_here();
+  void drop_adjustment();
 
   SystemOptions options_;
   Map map_;
@@ -99,8 +112,11 @@ class MapOwner {
   bool loaded_ = false;
   std::vector<DormantMap> dormant_;  // oldest first
   std::shared_ptr<const std::vector<MapState>> published_dormant_;
-  std::optional<MapEdit> loop_edit_;
+  std::optional<FoundLoop> loop_;
   std::optional<FoundJoin> join_;
+  std::shared_ptr<FullAdjustment> adjustment_;
+  bool adjust_again_ = false;  // landmarks were merged while one was under way
+  std::int64_t completed_before_adjustment_ = 0;
   AtlasCounts counts_;
   MeasurementModel model_;
   SnapshotCell& cell_;
@@ -108,7 +124,7 @@ class MapOwner {
   KeyframeId newest_;
   std::int64_t newest_frame_ = 0;
   double newest_s_ = 0;
-  std::int64_t inserted_ = 0;
+  std::int64_t inserted_ = 0, completed_ = 0;
   std::vector<EditEvent> edits_;
 };
 

@@ -93,6 +93,7 @@ void MapOwner::drop_small_maps() {
 
 void MapOwner::open_new_map(std::int64_t frame) {
   const OpenMap opening{map_.unused_ids(), map_.version()};
+  drop_adjustment();
   put_to_sleep();
   drop_small_maps();
   map_ = Map{};
@@ -109,6 +110,7 @@ void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) 
   const DormantMap woken = dormant_[index];
   dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(index));
   const OpenMap opening{map_.unused_ids(), map_.version()};
+  drop_adjustment();
   put_to_sleep();
   map_ = *woken.state.map;
   places_ = *woken.state.places;
@@ -135,6 +137,7 @@ void MapOwner::join_maps() {
   VSG_INVARIANT(join_.has_value());
   const FoundJoin found = std::move(*join_);
   join_.reset();
+  drop_adjustment();
   const DormantMap other = dormant_[found.dormant];
   dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(found.dormant));
   const bool onto_other = found.join.onto_other;
@@ -160,6 +163,7 @@ void MapOwner::join_maps() {
   publish_dormant();
   apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0});
   if (options_.builds_structure() && younger_space) structure_.absorb(map_, *younger_space);
+  adjust_from_here();
 }
 
 }  // namespace vsgraphs

@@ -114,11 +114,11 @@ class ReplayingExecutor : public Executor {
         require_run(owner_.loop_found(), departed(event));
         owner_.close_loop();
         break;
-      case EditEvent::Kind::adjust: {
-        int left = event.iterations;
-        owner_.adjust_all([&left] { return left-- <= 0; });
+      case EditEvent::Kind::adjust:
+        require_run(owner_.adjustment() != nullptr, departed(event));
+        owner_.run_adjustment();
+        owner_.take_in_adjustment();
         break;
-      }
     }
   }
 

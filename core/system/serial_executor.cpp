@@ -13,8 +13,11 @@ class SerialExecutor : public Executor {
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     TrackedFrame result = tracking_.track(frame, cell_.take());
-    const auto never = [] { return false; };
-    if (result.keyframe_request) owner_.work_on(*result.keyframe_request, never, never);
+    if (result.keyframe_request) owner_.work_on(*result.keyframe_request, {});
+    while (owner_.adjustment()) {
+      owner_.run_adjustment();
+      owner_.finish_adjustment();
+    }
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {

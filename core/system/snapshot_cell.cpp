@@ -18,6 +18,11 @@ void SnapshotCell::wait_for_inserted(std::int64_t count) const {
   changed_.wait(lock, [this, count] { return closed_ || content_.inserted >= count; });
 }
 
+void SnapshotCell::wait_for_completed(std::int64_t count) const {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this, count] { return closed_ || content_.completed >= count; });
+}
+
 void SnapshotCell::close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;

@@ -19,8 +19,10 @@ struct AtlasCounts {
 class SnapshotCell {
  public:
   struct Content {
-    Snapshot snapshot;                         // of the map being worked on
-    std::int64_t inserted = 0;                 // keyframe requests that are in the maps
+    Snapshot snapshot;          // of the map being worked on
+    std::int64_t inserted = 0;  // keyframe requests that are in the maps
+    std::int64_t completed =
+        0;  // of these, all is done that they bring about, adjustment of the map included
     std::shared_ptr<const PlaceIndex> places;  // of the snapshot's keyframes
     // The other maps, oldest first; never null once something was published.
     std::shared_ptr<const std::vector<MapState>> dormant;
@@ -28,8 +30,9 @@ class SnapshotCell {
   };
   void publish(Content content);
   Content take() const;
-  // Waits until at least `count` requests are in, or the cell is closed.
+  // Waits until at least `count` requests are in (completed), or the cell is closed.
   void wait_for_inserted(std::int64_t count) const;
+  void wait_for_completed(std::int64_t count) const;
   // Ends all waiting, now and later.
   void close();
 

@@ -1,39 +1,42 @@
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <chrono>
+#include <deque>
 #include <exception>
 #include <thread>
 
 #include "core/base/bounded_queue.h"
+#include "core/system/background_adjustment.h"
 #include "core/system/executor.h"
 #include "core/system/map_owner.h"
+#include "core/system/thread_priority.h"
 #include "core/system/tracking_lane.h"
 
 namespace vsgraphs {
 
 namespace {
 
-// The caller's thread tracks; one worker owns the map.
+// The caller's thread tracks; one worker owns the map; a third thread adjusts the whole map when a loop was closed.
 class ThreadedExecutor : public Executor {
  public:
   ThreadedExecutor(const Config& config, const Camera& camera, const AtlasState& known)
       : options_(config.system),
         tracking_(config, camera),
         owner_(config, camera, cell_, known),
-        requests_(queue_capacity) {
+        requests_(queue_capacity),
+        background_([this] { requests_.try_push({}); }) {
     worker_ = std::thread([this] { work(); });
   }
   ~ThreadedExecutor() override { stop_worker(); }
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     rethrow_worker_failure();
+    if (!options_.realtime) wait_for_mapper(frame.timestamp_s);
     TrackedFrame result = tracking_.track(frame, cell_.take());
-    if (result.keyframe_request) requests_.push({result.keyframe_request, 0, nullptr, nullptr});
+    if (result.keyframe_request) {
+      unfinished_.push_back(frame.timestamp_s);
+      requests_.push({result.keyframe_request, 0, nullptr, nullptr});
+    }
     // Nothing can be tracked before a map's first keyframe stands.
     if (result.status == TrackStatus::initialised) cell_.wait_for_inserted(tracking_.requested());
-    if (!options_.realtime) wait_for_mapper();
     return result;
   }
 
@@ -54,16 +57,19 @@ class ThreadedExecutor : public Executor {
   std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
   double waited_s() const override { return waited_s_; }
-  std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
+  std::vector<const SpanRecorder*> spans() const override {
+    std::vector<const SpanRecorder*> all = lanes(tracking_, owner_);
+    all.push_back(&background_.spans());
+    return all;
+  }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
 
  private:
   // Far above what the keyframe policy lets wait, so that a push never blocks at camera pace.
   static constexpr std::size_t queue_capacity = 64;
-  // Keyframes that wait while the whole map is adjusted, at the most: then it is cut short.
-  static constexpr std::size_t adjustment_backlog = 8;
 
-  // A keyframe to make, or what was found in the image of one.
+  // A keyframe to make, or what was found in the image of one. Nothing of these wakes the worker to look at the adjustment;
+  // where the queue is full, it will look anyway.
   struct Work {
     std::shared_ptr<const KeyframeRequest> request;
     std::int64_t frame = 0;
@@ -72,17 +78,15 @@ class ThreadedExecutor : public Executor {
   };
 
   void work() {
-    // Tracking is what a user waits for; on Linux the priority is the thread's own.
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
+    give_way(5);
     try {
       while (const auto work = requests_.pop()) {
         if (work->labels) owner_.label(work->frame, *work->labels);
         if (work->markers) owner_.mark(work->frame, *work->markers);
-        if (!work->request) continue;
-        owner_.work_on(
-            *work->request, [this] { return cut_short(); },
-            [this] { return requests_.size() >= adjustment_backlog; });
+        if (work->request) owner_.work_on(*work->request, [this] { return cut_short(); });
+        adjust_beside();
       }
+      adjust_to_the_end();
       owner_.end_run();
     } catch (const std::exception& error) {
       // Whatever it was, it was not the frame the tracker is at: it must not look like bad input of that frame.
@@ -92,15 +96,30 @@ class ThreadedExecutor : public Executor {
     cell_.close();
   }
 
+  void adjust_beside() {
+    if (background_.has_finished(owner_.adjustment())) owner_.finish_adjustment();
+    background_.work_on(owner_.adjustment());
+  }
+
+  void adjust_to_the_end() {
+    while (owner_.adjustment()) {
+      background_.wait();
+      adjust_beside();
+    }
+  }
+
   // At the camera's pace, a window's adjustment gives way to the keyframes that wait. Otherwise tracking waits for it, so
   // that accuracy does not hang on how fast the machine is.
   bool cut_short() const { return options_.realtime && requests_.size() >= 2; }
 
-  void wait_for_mapper() {
-    const std::int64_t needed = tracking_.requested() - options_.max_waiting_keyframes;
-    if (cell_.take().inserted >= needed) return;
+  // As far as a camera would have let mapping come: at its pace, what a keyframe brings about is done some frames later.
+  // Otherwise a sequence of few frames per second would be tracked on a map that is always a long way behind.
+  void wait_for_mapper(double now_s) {
+    while (!unfinished_.empty() && unfinished_.front() < now_s - options_.max_lag_s) unfinished_.pop_front();
+    const std::int64_t needed = tracking_.requested() - std::ssize(unfinished_);
+    if (cell_.take().completed >= needed) return;
     const auto begin = std::chrono::steady_clock::now();
-    cell_.wait_for_inserted(needed);
+    cell_.wait_for_completed(needed);
     waited_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
@@ -121,7 +140,9 @@ class ThreadedExecutor : public Executor {
   TrackingLane tracking_;
   MapOwner owner_;
   BoundedQueue<Work> requests_;
+  BackgroundAdjustment background_;
   std::exception_ptr failure_;
+  std::deque<double> unfinished_;  // timestamps of requests that need not be completed yet
   double waited_s_ = 0;
   std::thread worker_;
 };

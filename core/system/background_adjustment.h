@@ -1,0 +1,46 @@
+// The thread on which the whole map is adjusted beside tracking and mapping.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "core/stages/loop_adjustment.h"
+#include "core/system/span_recorder.h"
+
+namespace vsgraphs {
+
+class BackgroundAdjustment {
+ public:
+  // `done` is called on the adjustment's thread when it has run to its end or failed; it must not wait for who calls work_on().
+  explicit BackgroundAdjustment(std::function<void()> done)
+      : done_(std::move(done)), spans_("full adjustment") {}
+  ~BackgroundAdjustment() { stop(); }
+  BackgroundAdjustment(const BackgroundAdjustment&) = delete;
+  BackgroundAdjustment& operator=(const BackgroundAdjustment&) = delete;
+
+  // The adjustment wanted from here on; null: none. Another one that was under way is stopped, which takes one iteration.
+  void work_on(const std::shared_ptr<FullAdjustment>& wanted);
+  // Whether `adjustment` is the one worked on and has run. Rethrows what made it fail.
+  bool has_finished(const std::shared_ptr<FullAdjustment>& adjustment) const;
+  // Until the one worked on has run.
+  void wait();
+
+  // Not while one is under way.
+  const SpanRecorder& spans() const { return spans_; }
+
+ private:
+  void run(FullAdjustment& adjustment);
+  void stop();
+
+  std::function<void()> done_;
+  SpanRecorder spans_;
+  std::shared_ptr<FullAdjustment> current_;
+  std::atomic<bool> stop_ = false, finished_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace vsgraphs
