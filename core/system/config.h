@@ -27,7 +27,7 @@ struct SystemOptions {
   int min_map_keyframes = 5;
   bool builds_scene() const { return mode != "slam"; }
   bool builds_structure() const { return mode == "full"; }
-  double max_lag_s = 0.1;
+  double max_lag_s = 0.05;
   std::string schedule_out;
   std::string replay;
 };
