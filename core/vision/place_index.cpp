@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/vision/image_parts.h"
 
 namespace vsgraphs {
 
@@ -17,47 +18,31 @@ constexpr std::size_t segment_ratio = 4;   // of neighbouring segments' sizes, a
 constexpr int turn_bins = 16;
 
 struct Hit {
-  std::uint32_t keyframe;
+  PlaceSegment::Owner owner;
   int distance;
-  std::uint8_t angle;
-};
-
-// A flag for the part of what features cover, one of 8 x 8, that a feature lies in.
-class ImageParts {
- public:
-  explicit ImageParts(const FeatureSet& features) {
-    for (const Feature& f : features.features()) {
-      width_ = std::max(width_, f.u);
-      height_ = std::max(height_, f.v);
-    }
-  }
-  std::uint64_t flag(const Feature& f) const {
-    return std::uint64_t{1} << (8 * part(f.v, height_) + part(f.u, width_));
-  }
-
- private:
-  static unsigned part(float at, float size) {
-    return static_cast<unsigned>(std::clamp(8 * at / (size + 1), 0.0F, 7.0F));
-  }
-  float width_ = 0, height_ = 0;
 };
 
 struct Votes {
   double weight = 0;
   int count = 0;
-  int parts = 0;  // of the image, that they come from
+  std::uint64_t asked_in = 0, found_in = 0;  // parts of the two images that they come from
 };
 
-// Votes per keyframe and turn: a count, by weight, and where in the image they come from.
+// Votes per keyframe and turn: a count, by weight, and where in the two images they come from.
 class Ballot {
  public:
-  Ballot(std::size_t keyframes, std::span<const std::uint8_t> removed)
-      : removed_(removed), slots_(keyframes), best_(keyframes, no_hit) {}
+  Ballot(std::size_t keyframes, std::span<const std::uint8_t> removed, int max_distance)
+      : removed_(removed), slots_(keyframes), best_(keyframes, no_hit) {
+    // Nearly as probable as a flip of that many bits: a Gauss bell.
+    const double sigma = 0.6 * std::max(max_distance, 1);
+    for (int d = 0; d <= max_distance; ++d)
+      closeness_.push_back(static_cast<float>(std::exp(-d * d / (2 * sigma * sigma))));
+  }
 
   // All hits of one feature, in several parts. Only the nearest one in each keyframe counts.
   void add(const Hit& hit) {
-    if (removed_[hit.keyframe]) return;
-    std::int32_t& best = best_[hit.keyframe];
+    if (removed_[hit.owner.keyframe()]) return;
+    std::int32_t& best = best_[hit.owner.keyframe()];
     if (best == no_hit) {
       best = static_cast<std::int32_t>(hits_.size());
       hits_.push_back(hit);
@@ -65,44 +50,49 @@ class Ballot {
       hits_[static_cast<std::size_t>(best)] = hit;
     }
   }
-  void close(std::uint8_t angle, std::uint64_t where, double keyframes) {
+  void close(std::uint32_t angle, std::uint32_t part, double keyframes) {
     const float weight =
         hits_.empty() ? 0 : static_cast<float>(std::log((keyframes + 1) / static_cast<double>(hits_.size())));
     for (const Hit& hit : hits_) {
-      const auto bin = static_cast<std::uint8_t>(hit.angle - angle) / (256 / turn_bins);
-      slots_[hit.keyframe].weight[static_cast<std::size_t>(bin)] += weight;
-      ++slots_[hit.keyframe].count[static_cast<std::size_t>(bin)];
-      slots_[hit.keyframe].seen_in[static_cast<std::size_t>(bin)] |= where;
-      best_[hit.keyframe] = no_hit;
+      constexpr std::uint32_t steps = 1U << PlaceSegment::angle_bits;
+      Bin& bin =
+          slots_[hit.owner.keyframe()][((hit.owner.angle() - angle) & (steps - 1)) / (steps / turn_bins)];
+      bin.weight += weight * closeness_[static_cast<std::size_t>(hit.distance)];
+      ++bin.count;
+      bin.asked_in |= ImageParts::flag(part);
+      bin.found_in |= ImageParts::flag(hit.owner.part());
+      best_[hit.owner.keyframe()] = no_hit;
     }
     hits_.clear();
   }
   // Of the best three neighbouring turns.
   Votes result(std::size_t keyframe) const {
     Votes best;
-    const Slot& slot = slots_[keyframe];
+    const auto& slot = slots_[keyframe];
     for (std::size_t b = 0; b < turn_bins; ++b) {
-      const std::size_t before = (b + turn_bins - 1) % turn_bins, after = (b + 1) % turn_bins;
-      const double weight = slot.weight[before] + slot.weight[b] + slot.weight[after];
+      const Bin &before = slot[(b + turn_bins - 1) % turn_bins], &here = slot[b],
+                &after = slot[(b + 1) % turn_bins];
+      const double weight = before.weight + here.weight + after.weight;
       if (weight <= best.weight) continue;
-      best.weight = weight;
-      best.count = slot.count[before] + slot.count[b] + slot.count[after];
-      best.parts = std::popcount(slot.seen_in[before] | slot.seen_in[b] | slot.seen_in[after]);
+      best = {weight, before.count + here.count + after.count,
+              before.asked_in | here.asked_in | after.asked_in,
+              before.found_in | here.found_in | after.found_in};
     }
     return best;
   }
 
  private:
   static constexpr std::int32_t no_hit = -1;
-  struct Slot {
-    std::array<float, turn_bins> weight{};
-    std::array<std::uint16_t, turn_bins> count{};
-    std::array<std::uint64_t, turn_bins> seen_in{};
+  struct Bin {
+    float weight = 0;
+    std::uint16_t count = 0;
+    std::uint64_t asked_in = 0, found_in = 0;
   };
   std::span<const std::uint8_t> removed_;
-  std::vector<Slot> slots_;
+  std::vector<std::array<Bin, turn_bins>> slots_;
   std::vector<std::int32_t> best_;
   std::vector<Hit> hits_;
+  std::vector<float> closeness_;  // what a hit at that distance is worth
 };
 
 // The buckets one feature has to look into, looked up ahead of time so that memory can be on its way.
@@ -121,8 +111,7 @@ class Probes {
       for (std::uint32_t i = 0; i < bucket.size; ++i) {
         const int distance = bucket.signatures[i].distance(wanted_);
         if (distance > max_distance) continue;
-        const PlaceSegment::Owner owner = bucket.owners[i];
-        ballot.add({owner.keyframe(), distance, owner.angle()});
+        ballot.add({bucket.owners[i], distance});
       }
     }
   }
@@ -141,6 +130,10 @@ class Probes {
   std::vector<PlaceSegment::Bucket> buckets_;
 };
 
+double share_of(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(std::popcount(part)) / std::popcount(whole);
+}
+
 }  // namespace
 
 void PlaceIndex::add(KeyframeId keyframe, const FeatureSet& features) {
@@ -151,6 +144,10 @@ void PlaceIndex::add(KeyframeId keyframe, const FeatureSet& features) {
   }
   if (ids_[keyframe.index].valid()) return;
   ids_[keyframe.index] = keyframe;
+  covered_.resize(ids_.size());
+  const ImageParts parts(features);
+  for (int i = 0; i < std::min(options_.features_per_keyframe, features.size()); ++i)
+    covered_[keyframe.index] |= ImageParts::flag(parts.of(features[i]));
   ++size_;
   segments_.push_back(
       std::make_shared<const PlaceSegment>(keyframe, features, options_.features_per_keyframe));
@@ -159,7 +156,8 @@ void PlaceIndex::add(KeyframeId keyframe, const FeatureSet& features) {
 
 bool PlaceIndex::restore(std::vector<PlaceSegment::Content> segments) {
   const auto known = [this](std::uint32_t index) { return index < ids_.size() && ids_[index].valid(); };
-  if (removed_.size() != ids_.size() || options_.features_per_keyframe < 0) return false;
+  if (removed_.size() != ids_.size() || covered_.size() != ids_.size() || options_.features_per_keyframe < 0)
+    return false;
   size_ = 0;
   for (std::uint32_t i = 0; i < ids_.size(); ++i) {
     if (ids_[i].valid() && ids_[i].index != i) return false;
@@ -232,7 +230,7 @@ std::size_t PlaceIndex::bytes() const {
 
 std::vector<PlaceMatch> PlaceIndex::query(const FeatureSet& features, int max_results,
                                           std::span<const std::uint8_t> excluded) const {
-  Ballot ballot(ids_.size(), removed_);
+  Ballot ballot(ids_.size(), removed_, options_.max_distance);
   const int asked = std::min(options_.features_per_keyframe, features.size());
   const ImageParts parts(features);
   std::uint64_t asked_in = 0;
@@ -241,9 +239,9 @@ std::vector<PlaceMatch> PlaceIndex::query(const FeatureSet& features, int max_re
   for (int i = 0; i < asked; ++i) {
     if (i + 1 < asked) probes[(i + 1) % 2].gather(segments_, features.descriptor(i + 1));
     probes[i % 2].scan(options_.max_distance, ballot);
-    const std::uint64_t where = parts.flag(features[i]);
-    asked_in |= where;
-    ballot.close(PlaceSegment::angle_steps(features[i].angle_rad), where, size_);
+    const std::uint32_t part = parts.of(features[i]);
+    asked_in |= ImageParts::flag(part);
+    ballot.close(PlaceSegment::angle_steps(features[i].angle_rad), part, size_);
   }
   std::vector<PlaceMatch> matches;
   const double most = asked * std::log(size_ + 1.0);
@@ -251,7 +249,8 @@ std::vector<PlaceMatch> PlaceIndex::query(const FeatureSet& features, int max_re
     if (k < excluded.size() && excluded[k]) continue;
     const Votes votes = ballot.result(k);
     if (votes.weight <= 0) continue;
-    const double spread = static_cast<double>(votes.parts) / std::popcount(asked_in);
+    const double spread =
+        std::sqrt(share_of(votes.asked_in, asked_in) * share_of(votes.found_in, covered_[k]));
     matches.push_back({ids_[k], spread * votes.weight / most, votes.count});
   }
   const auto end = matches.begin() + std::min<std::ptrdiff_t>(max_results, std::ssize(matches));

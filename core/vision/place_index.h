@@ -5,8 +5,8 @@
 // and the 16 one bit away hold about 0.026 % of all features and, where a bit flips in one view of eight, a third of
 // the matching ones; the distance over half a descriptor decides. A feature's vote is worth the less the more keyframes it
 // is found in (inverse document frequency, Sivic and Zisserman, ICCV 2003), counted by how far it is turned, as a camera
-// turns all features alike (weak geometric consistency, Jegou, Douze, Schmid, ECCV 2008). Votes from all over the image
-// count more than as many from one poster, which may hang in two rooms.
+// turns all features alike (weak geometric consistency, Jegou, Douze, Schmid, ECCV 2008), and by how near the two descriptors
+// are. Votes from all over both images count more than as many from one poster, which may hang in two rooms.
 //
 // Storage is a few immutable segments that are merged as they grow (the logarithmic method of Bentley and Saxe, 1980):
 // copies share them, so the owner hands out a copy per snapshot and any thread queries it while the owner goes on.
@@ -28,7 +28,7 @@ namespace vsgraphs {
 
 struct PlaceIndexOptions {
   int features_per_keyframe = 600;
-  int max_distance = 25;
+  int max_distance = 20;
 };
 template <FieldsOf<PlaceIndexOptions> T>
 void visit_fields(T& v, auto& field) {
@@ -45,8 +45,8 @@ void describe(PlaceIndexOptions& o, Visitor& field) {
 
 struct PlaceMatch {
   KeyframeId keyframe;
-  double score =
-      0;  // 0..1: 1 if every feature asked for were found in this keyframe alone; less where votes are in one place
+  // 0..1: 1 if every feature asked for were found, bit for bit, in this keyframe alone; less where votes are in one place.
+  double score = 0;
   int votes = 0;  // features found in it, turned alike
 };
 
@@ -77,7 +77,7 @@ class PlaceIndex {
   friend void visit_fields(T& v, auto& field) {
     std::vector<PlaceSegment::Content> segments;
     for (const auto& segment : v.segments_) segments.push_back(segment->content());
-    field(v.options_, v.ids_, v.removed_, segments);
+    field(v.options_, v.ids_, v.removed_, v.covered_, segments);
     if constexpr (std::remove_reference_t<decltype(field)>::reads)
       field.require(v.restore(std::move(segments)), "a place index that does not fit together");
   }
@@ -92,6 +92,7 @@ class PlaceIndex {
   std::vector<std::shared_ptr<const PlaceSegment>> segments_;  // oldest and largest first
   std::vector<KeyframeId> ids_;                                // by keyframe index; invalid: never added
   std::vector<std::uint8_t> removed_;                          // by keyframe index
+  std::vector<std::uint64_t> covered_;  // likewise; parts of the image that its features lie in
   int size_ = 0;
 };
 

@@ -93,7 +93,45 @@ TEST(PlaceIndex, ARoomCountsMoreThanAPosterOfIt) {
   ASSERT_EQ(matches.size(), 2U);
   EXPECT_EQ(matches[0].keyframe, keyframe(1));
   EXPECT_GT(matches[1].votes, matches[0].votes) << "though the poster has more votes";
-  EXPECT_LT(3 * matches[1].score, matches[0].score);
+  EXPECT_LT(2 * matches[1].score, matches[0].score);
+}
+
+TEST(PlaceIndex, WhoShowsMuchElseIsLessAlike) {
+  // What is asked for all lies on a poster. One keyframe shows the poster, another the poster in a corner of a full view.
+  View now, poster, full;
+  const auto put = [](View& view, std::uint64_t name, float u, float v) {
+    view.show(name);
+    view.features.back().u = u;
+    view.features.back().v = v;
+  };
+  for (std::uint64_t i = 0; i < 49; ++i) {
+    const auto column = static_cast<float>(i % 7), row = static_cast<float>(i / 7);
+    put(now, i, 90 * column, 60 * row);
+    put(poster, i, 80 * column, 65 * row);
+    put(full, i, 20 * column, 15 * row);
+  }
+  for (std::uint64_t i = 0; i < 49; ++i)
+    put(full, 1000 + i, 90 * static_cast<float>(i % 7), 60 * static_cast<float>(i / 7));
+  PlaceIndex index;
+  index.add(keyframe(0), full.set());
+  index.add(keyframe(1), poster.set());
+  const auto matches = index.query(now.set(), 2);
+  ASSERT_EQ(matches.size(), 2U);
+  EXPECT_EQ(matches[0].keyframe, keyframe(1));
+  EXPECT_EQ(matches[0].votes, matches[1].votes);
+  EXPECT_LT(2 * matches[1].score, matches[0].score);
+}
+
+TEST(PlaceIndex, TheNearerTheLookTheMoreItCounts) {
+  PlaceIndex index;
+  index.add(keyframe(0), View().show_range(0, 60, 1).set());
+  index.add(keyframe(1), View().show_range(0, 60).set());
+  const auto matches = index.query(View().show_range(0, 60).set(), 2);
+  ASSERT_EQ(matches.size(), 2U);
+  EXPECT_EQ(matches[0].keyframe, keyframe(1));
+  const double per_vote = matches[1].score * matches[0].votes / (matches[0].score * matches[1].votes);
+  EXPECT_LT(per_vote, 0.95) << "eight bits of 128 off";
+  EXPECT_GT(per_vote, 0.5);
 }
 
 TEST(PlaceIndex, ScoresUnknownPlacesFarLower) {

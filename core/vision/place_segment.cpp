@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/vision/image_parts.h"
 
 namespace vsgraphs {
 
@@ -15,9 +16,10 @@ constexpr std::size_t bucket_count = std::size_t{1} << PlaceSignature::key_bits;
 
 }  // namespace
 
-std::uint8_t PlaceSegment::angle_steps(float angle_rad) {
-  return static_cast<std::uint8_t>(std::lround(static_cast<double>(angle_rad) * 128.0 / std::numbers::pi) &
-                                   0xff);
+std::uint32_t PlaceSegment::angle_steps(float angle_rad) {
+  constexpr int steps = 1 << angle_bits;
+  const auto nearest = std::lround(static_cast<double>(angle_rad) * steps / (2 * std::numbers::pi));
+  return static_cast<std::uint32_t>(nearest & (steps - 1));
 }
 
 PlaceSegment::PlaceSegment(Content content)
@@ -32,7 +34,8 @@ PlaceSegment::PlaceSegment(Content content)
 
 PlaceSegment::PlaceSegment(KeyframeId keyframe, const FeatureSet& features, int count)
     : keyframes_{keyframe}, begin_(bucket_count + 1, 0) {
-  VSG_INVARIANT(keyframe.index < 1U << 24);
+  VSG_INVARIANT(keyframe.index < 1U << (32 - part_bits - angle_bits));
+  const ImageParts parts(features);
   const int n = std::min(count, features.size());
   for (int i = 0; i < n; ++i) ++begin_[PlaceSignature::of(features.descriptor(i)).key() + 1];
   for (std::size_t k = 0; k < bucket_count; ++k) begin_[k + 1] += begin_[k];
@@ -42,7 +45,7 @@ PlaceSegment::PlaceSegment(KeyframeId keyframe, const FeatureSet& features, int 
   for (int i = 0; i < n; ++i) {
     const std::uint32_t place = next[PlaceSignature::of(features.descriptor(i)).key()]++;
     signatures_[place] = PlaceSignature::of(features.descriptor(i));
-    owners_[place] = {keyframe.index << 8 | angle_steps(features[i].angle_rad)};
+    owners_[place] = Owner::of(keyframe.index, parts.of(features[i]), angle_steps(features[i].angle_rad));
   }
 }
 

@@ -32,13 +32,19 @@ void visit_fields(T& v, auto& field) {
 
 class PlaceSegment {
  public:
-  static std::uint8_t angle_steps(float angle_rad);
+  static constexpr std::uint32_t angle_bits = 6, part_bits = 6;
+  // 64 to the full turn.
+  static std::uint32_t angle_steps(float angle_rad);
 
-  // Whose feature it is, and how it was turned: 24 bits of keyframe index, 8 of angle (256 to the full turn).
+  // Whose feature it is, where in its image, and how it was turned: 20 bits of keyframe index, 6 of part, 6 of angle.
   struct Owner {
     std::uint32_t packed = 0;
-    std::uint32_t keyframe() const { return packed >> 8; }
-    std::uint8_t angle() const { return static_cast<std::uint8_t>(packed); }
+    static Owner of(std::uint32_t keyframe, std::uint32_t part, std::uint32_t angle) {
+      return {(keyframe << part_bits | part) << angle_bits | angle};
+    }
+    std::uint32_t keyframe() const { return packed >> (part_bits + angle_bits); }
+    std::uint32_t part() const { return packed >> angle_bits & ((1U << part_bits) - 1); }
+    std::uint32_t angle() const { return packed & ((1U << angle_bits) - 1); }
 
     template <FieldsOf<Owner> T>
     friend void visit_fields(T& v, auto& field) {
