@@ -116,37 +116,12 @@ bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& 
   return cosine >= std::cos(options.max_tilt_deg * rad_per_deg);
 }
 
-FreeSpaceCount count_seen_through(const Map& map, const Camera& camera, const std::vector<KeyframeId>& from,
-                                  const Se3& correction, const std::vector<KeyframeId>& to) {
-  const DepthSampler sampler(camera);
-  FreeSpaceCount count;
-  for (const KeyframeId seer : from) {
-    const Keyframe& source = *map.keyframes().find(seer);
-    if (!source.surface) continue;
-    for (const KeyframeId witness : to) {
-      const Keyframe& target = *map.keyframes().find(witness);
-      if (!target.surface) continue;
-      const Se3 target_from_source =
-          target.world_from_camera.inverse() * correction * source.world_from_camera;
-      for (const SurfaceSample& sample : source.surface->samples) {
-        if (!sample.has_normal()) continue;  // rims are where readings mislead
-        const Eigen::Vector3d p = target_from_source * sample.point.cast<double>();
-        const SurfaceSample* there = p.z() > 0 ? sampler.look_up(*target.surface, p) : nullptr;
-        if (!there || !there->has_normal()) continue;
-        const double behind_m = static_cast<double>(there->point.z()) - p.z();
-        const double margin_m =
-            0.15 + 4.0 * camera.depth_noise.sigma_m(static_cast<double>(there->point.z()));
-        if (behind_m < -margin_m) continue;  // hidden behind what the witness saw
-        ++count.seen;
-        count.through += behind_m > margin_m;
-      }
-    }
-  }
-  return count;
-}
-
 bool leaves_free_space_free(const FreeSpaceCount& count, const LoopCheckOptions& options) {
   return count.seen < min_compared_samples || count.through <= options.max_seen_through_share * count.seen;
+}
+
+bool neighbours_agree(const FreeSpaceCount& count, const LoopCheckOptions& options) {
+  return count.through <= options.max_contradicted_share * count.seen;
 }
 
 double drift_sigmas(const Se3& place_from_keyframe, const Se3& place_from_keyframe_aligned,

@@ -8,6 +8,7 @@
 #include "core/base/options.h"
 #include "core/geometry/camera.h"
 #include "core/map/map.h"
+#include "core/stages/free_space_check.h"
 #include "core/stages/loop_graph.h"
 
 namespace vsgraphs {
@@ -18,6 +19,7 @@ struct LoopCheckOptions {
   double same_offset_m = 0.12;
   double max_disagreeing_share = 0.35;
   double max_seen_through_share = 0.35;
+  double max_contradicted_share = 0.01;
   double max_drift_sigmas = 5.0;
 };
 
@@ -30,6 +32,9 @@ void describe(LoopCheckOptions& o, Visitor& field) {
         "share of the surface seen from both sides that may disagree when a loop closes");
   field("max_seen_through_share", o.max_seen_through_share, 0.0, 1.0,
         "share of a side's surfaces that may stand where the other side looked through");
+  field("max_contradicted_share", o.max_contradicted_share, 0.0, 1.0,
+        "share of all surfaces of two maps that may stand where the other one was looked through when the "
+        "maps are joined");
   field("max_drift_sigmas", o.max_drift_sigmas, 1.0, 100.0,
         "standard deviations of drift that a loop may take back");
 }
@@ -63,15 +68,10 @@ bool surfaces_agree(const SurfaceAgreement& agreement, const LoopCheckOptions& o
 bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& up_moved,
                    const std::optional<Eigen::Vector3d>& up_standing, const LoopCheckOptions& options);
 
-// Of the surfaces that `from` saw (moved by `correction`) and that stand in view of `to`, how many `to` looked through to
-// something behind. Their depth grids are compared, planes or not.
-struct FreeSpaceCount {
-  int seen = 0;     // where `to` has a reading, in front of it or on it
-  int through = 0;  // of those, in front
-};
-FreeSpaceCount count_seen_through(const Map& map, const Camera& camera, const std::vector<KeyframeId>& from,
-                                  const Se3& correction, const std::vector<KeyframeId>& to);
 bool leaves_free_space_free(const FreeSpaceCount& count, const LoopCheckOptions& options);
+// Of two maps side by side in one, all their keyframes against each other: two rooms may look alike and stand alike where the camera
+// stands, but what surrounds them differs.
+bool neighbours_agree(const FreeSpaceCount& count, const LoopCheckOptions& options);
 
 // How many standard deviations of `drift` (and of the alignment itself) lie between where the map has the keyframe, seen from
 // the place, and where the alignment has it: the square root of a chi-square with six degrees of freedom.

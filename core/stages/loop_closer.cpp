@@ -35,8 +35,8 @@ std::vector<KeyframeId> without(std::vector<KeyframeId> keyframes, const std::ve
 
 const char* to_string(LoopVerdict verdict) {
   static constexpr const char* names[] = {
-      "none similar",  "not aligned",  "unsupported", "tilted", "surfaces disagree",
-      "through walls", "beyond drift", "joined",      "closed"};
+      "none similar",  "not aligned",         "unsupported",  "tilted", "surfaces disagree",
+      "through walls", "neighbours disagree", "beyond drift", "joined", "closed"};
   return names[static_cast<std::size_t>(verdict)];
 }
 
@@ -203,6 +203,16 @@ KeyframeId oldest(const Map& map) {
   return {};
 }
 
+// At most so many that looking from all of one map at all of another takes some 0.1 s.
+std::vector<KeyframeId> evenly(const Map& map) {
+  constexpr std::size_t enough = 60;
+  std::vector<KeyframeId> all, some;
+  map.keyframes().for_each([&all](KeyframeId id, const Keyframe&) { all.push_back(id); });
+  const std::size_t taken = std::min(all.size(), enough);
+  for (std::size_t i = 0; i < taken; ++i) some.push_back(all[i * all.size() / taken]);
+  return some;
+}
+
 }  // namespace
 
 std::optional<MapJoin> LoopCloser::join(KeyframeId keyframe, const Snapshot& snapshot, const KnownMap& other,
@@ -225,7 +235,7 @@ std::optional<MapJoin> LoopCloser::join(KeyframeId keyframe, const Snapshot& sna
     attempt.place = candidate.keyframe;
     attempt.score = candidate.score;
     const auto loop = verify(both, here, there, snapshot->up_in_world(), other.map->up_in_world(), attempt);
-    if (loop) {
+    if (loop && neighbours_pass(both, snapshot, other.map, *loop, attempt)) {
       attempt.verdict = LoopVerdict::closed;
       report = attempt;
       last_closed_ = keyframe;
@@ -234,6 +244,23 @@ std::optional<MapJoin> LoopCloser::join(KeyframeId keyframe, const Snapshot& sna
     if (attempt.verdict > report.verdict) report = attempt;
   }
   return std::nullopt;
+}
+
+bool LoopCloser::neighbours_pass(const Map& both, const Snapshot& ours, const Snapshot& theirs,
+                                 const LoopAlignment& loop, LoopReport& report) const {
+  report.verdict = LoopVerdict::neighbours_disagree;
+  const std::vector<KeyframeId> moved = evenly(*ours), standing = evenly(*theirs);
+  const Se3 correction =
+      loop.world_from_camera * ours->keyframes().find(loop.keyframe)->world_from_camera.inverse();
+  Slack slack;
+  slack.share = options_.drift.share_of_way;
+  slack.centre = loop.world_from_camera.translation();
+  const FreeSpaceCount onward = count_seen_through(both, camera_, moved, correction, standing, slack);
+  slack.centre = correction.inverse() * slack.centre;
+  const FreeSpaceCount back = count_seen_through(both, camera_, standing, correction.inverse(), moved, slack);
+  report.neighbours = onward;
+  report.neighbours += back;
+  return neighbours_agree(onward, options_.checks) && neighbours_agree(back, options_.checks);
 }
 
 MapJoin LoopCloser::join_maps(const Snapshot& snapshot, const Snapshot& other, const MappedPlace& here,

@@ -46,15 +46,16 @@ void describe(LoopCloserOptions& o, Visitor& field) {
 
 // How far a candidate came; the checks in the order they are made.
 enum class LoopVerdict : std::uint8_t {
-  none_similar,       // no place worth comparing
-  not_aligned,        // too few features agree on a pose
-  unsupported,        // the keyframe's neighbours do not see the place
-  tilted,             // it would tilt the up direction
-  surfaces_disagree,  // walls or ground would not fall together
-  through_walls,      // surfaces would stand where the other side looked through
-  beyond_drift,       // the map cannot have drifted that far
-  joined,             // closed; only landmarks and planes were merged, as nothing was off
-  closed,             // closed and corrected
+  none_similar,         // no place worth comparing
+  not_aligned,          // too few features agree on a pose
+  unsupported,          // the keyframe's neighbours do not see the place
+  tilted,               // it would tilt the up direction
+  surfaces_disagree,    // walls or ground would not fall together
+  through_walls,        // surfaces would stand where the other side looked through
+  neighbours_disagree,  // so would the surroundings of the two places, which would become one map
+  beyond_drift,         // the map cannot have drifted that far
+  joined,               // closed; only landmarks and planes were merged, as nothing was off
+  closed,               // closed and corrected
 };
 const char* to_string(LoopVerdict verdict);
 
@@ -66,6 +67,7 @@ struct LoopReport {
   int supporters = 0;  // neighbours that see it too
   SurfaceAgreement surfaces;
   FreeSpaceCount free_space;
+  FreeSpaceCount neighbours;  // of whole maps
   double drift_sigmas = 0;
   double off_m = 0, off_rad = 0;  // what was corrected, at the keyframe
   SolveReport pose_graph;
@@ -109,6 +111,9 @@ class LoopCloser {
                                       LoopReport& report) const;
   bool surfaces_pass(const Map& map, const MappedPlace& here, const MappedPlace& there, const Se3& correction,
                      LoopReport& report) const;
+  // Of the map that holds `keyframe`, moved onto the other one.
+  bool neighbours_pass(const Map& both, const Snapshot& ours, const Snapshot& theirs,
+                       const LoopAlignment& loop, LoopReport& report) const;
   bool drift_passes(const Map& map, const KeyframeGraph& graph, const MappedPlace& there,
                     const LoopAlignment& loop, LoopReport& report) const;
   MapEdit correct(const Snapshot& snapshot, const KeyframeGraph& graph, const MappedPlace& here,

@@ -25,11 +25,14 @@ class Join : public ::testing::Test {
     return o;
   }
   // The same with ids behind the first one's, moved into another world.
-  Map carried_off(const LoopWorld& world) const {
+  Map carried_off(const LoopWorld& world, std::size_t seen_through_walls = 0) const {
     Map map;
     map.apply(OpenMap{older_.map.unused_ids(), 0});
-    for (const KeyframeId id : world.ids) {
-      Keyframe keyframe = *world.map.keyframes().find(id);
+    for (std::size_t k = 0; k < world.ids.size(); ++k) {
+      Keyframe keyframe = *world.map.keyframes().find(world.ids[k]);
+      if (k < seen_through_walls)
+        keyframe.surface =
+            std::make_shared<const DepthGrid>(grid_of(world.camera, world.truth[k], square_room(5)));
       keyframe.world_from_camera = elsewhere_ * keyframe.world_from_camera;
       add_keyframe(map, keyframe);
     }
@@ -119,6 +122,21 @@ TEST_F(Join, RoomsThatLookAlikeButAreNotOneStayApart) {
   EXPECT_EQ(report_.verdict, LoopVerdict::surfaces_disagree) << to_string(report_.verdict);
   LoopCloserOptions disarmed;
   disarmed.checks.max_disagreeing_share = 1;
+  LoopCloser trusting(disarmed, older_.camera, older_.pyramid, 1);
+  EXPECT_TRUE(trusting.join(newest(younger), younger.snapshot(), known(older_.map), report_, nullptr));
+}
+
+TEST_F(Join, WhatSurroundsThemTellsRoomsApartThatAreAlikeWhereTheCameraStands) {
+  LoopWorldOptions options = again();
+  options.keyframes = 14;
+  LoopWorld world(options);
+  // The camera came from where it saw farther than the other room is wide.
+  Map younger = carried_off(world, 4);
+  EXPECT_FALSE(closer_.join(newest(younger), younger.snapshot(), known(older_.map), report_, nullptr));
+  EXPECT_EQ(report_.verdict, LoopVerdict::neighbours_disagree) << to_string(report_.verdict);
+  EXPECT_GT(report_.neighbours.through, 0);
+  LoopCloserOptions disarmed;
+  disarmed.checks.max_contradicted_share = 1;
   LoopCloser trusting(disarmed, older_.camera, older_.pyramid, 1);
   EXPECT_TRUE(trusting.join(newest(younger), younger.snapshot(), known(older_.map), report_, nullptr));
 }

@@ -18,7 +18,9 @@ struct RecoveryOptions {
   int min_inliers = 25;
   int min_aligned = 15;
   int min_relocalisation_inliers = 40;
+  int min_place_inliers = 100;
   int max_candidates = 5;
+  double max_seen_through_share = 0.03;
 };
 
 template <typename Visitor>
@@ -27,8 +29,14 @@ void describe(RecoveryOptions& o, Visitor& field) {
   field("min_aligned", o.min_aligned, 10, 500,
         "matches by look with one keyframe that a pose after a loss must explain, to be searched around");
   field("min_relocalisation_inliers", o.min_relocalisation_inliers, 10, 500,
-        "landmarks that must be found around a pose after a loss");
+        "landmarks that must be found around a pose near the last one, after a loss");
+  field("min_place_inliers", o.min_place_inliers, 10, 1000,
+        "landmarks that must be found around a pose recognised by its look alone: a poster is not enough; "
+        "twice as many in "
+        "a map the camera was not in before");
   field("max_candidates", o.max_candidates, 1, 50, "keyframes of a map tried per frame after a loss");
+  field("max_seen_through_share", o.max_seen_through_share, 0.0, 1.0,
+        "share of the map's surfaces in view that a frame may look through where it was found after a loss");
 }
 
 class Recovery {

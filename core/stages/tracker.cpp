@@ -104,7 +104,7 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
         search_around(*last_in->map,
                       recovery_.from_recent(*last_in->map, *now_.features, now_.index, *last.features,
                                             last.landmarks, *last_world_, last.pose.keyframe, matches_),
-                      last.pose.keyframe);
+                      last.pose.keyframe, options_.recovery.min_relocalisation_inliers);
     if (pose && believable(pose->world_from_camera, now_.timestamp_s - last.timestamp_s))
       return Found{last_in, *pose};
   }
@@ -117,10 +117,14 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
   for (const KnownMap* candidate : order) {
     const Map& map = *candidate->map;
     const bool was_here = candidate == last_in;
+    // Nothing says that the camera is in this map at all. Where it may start one of its own there is time: what the two have in
+    // common will show, from more than one view.
+    const bool may_wait = !was_here && std::isfinite(options_.new_map_after_s);
+    const int enough = (may_wait ? 2 : 1) * options_.recovery.min_place_inliers;
     const RoomNumber last_room = was_here ? map.room_at(last_world_->translation()) : no_room;
     for (const KeyframeId place : recovery_.likely_places(*candidate, *now_.features, last_room)) {
       const auto pose = search_around(
-          map, recovery_.from_keyframe(map, place, *now_.features, now_.index, matches_), place);
+          map, recovery_.from_keyframe(map, place, *now_.features, now_.index, matches_), place, enough);
       if (!pose) continue;
       if (was_here && !believable(pose->world_from_camera, now_.timestamp_s - last_->timestamp_s)) continue;
       return Found{candidate, *pose};
@@ -132,13 +136,13 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
 // A pose by look from one keyframe may rest on few matches: what lies around is looked for, first widely, then narrowly,
 // and must be there.
 std::optional<FramePose> Tracker::search_around(const Map& map, std::optional<FramePose> guess,
-                                                KeyframeId near) {
+                                                KeyframeId near, int min_inliers) {
   for (const double radius_px : {options_.search_radius_px, options_.local_search_radius_px}) {
     if (!guess) return std::nullopt;
     guess = refine_on_local_map(map, *guess, near, radius_px);
   }
-  const bool good =
-      guess && guess->inliers >= options_.recovery.min_relocalisation_inliers && surfaces_agree(map, *guess);
+  const bool good = guess && guess->inliers >= min_inliers && surfaces_agree(map, *guess) &&
+                    leaves_surfaces_standing(map, *guess);
   return good ? guess : std::nullopt;
 }
 

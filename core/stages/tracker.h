@@ -102,7 +102,8 @@ class Tracker {
     FramePose pose;
   };
   std::optional<Found> relocalise(const KnownMaps& known, const KnownMap* last_in, TraceSink* trace);
-  std::optional<FramePose> search_around(const Map& map, std::optional<FramePose> guess, KeyframeId near);
+  std::optional<FramePose> search_around(const Map& map, std::optional<FramePose> guess, KeyframeId near,
+                                         int min_inliers);
   std::optional<FramePose> match_recent(const Map& map, bool& guessed, TraceSink* trace);
   double match_last_frame(const Map& map, const Se3& predicted, double radius_px,
                           const std::function<void(const std::optional<FramePose>&, bool)>& found_pose);
@@ -120,6 +121,8 @@ class Tracker {
   PosePriorTerm motion_prior(const Se3& predicted, double seconds) const;
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
+  // Or does it look through walls that any keyframe saw? A corner of another room may look, and stand, like this one.
+  bool leaves_surfaces_standing(const Map& map, const FramePose& pose) const;
   const DepthGrid& surface_now() const { return *now_.surface; }
   bool believable(const Se3& world_from_now, double seconds) const;
   void note_sightings();

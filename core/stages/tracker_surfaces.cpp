@@ -1,4 +1,5 @@
 // The part of the tracker that works with surfaces: see depth_alignment.h.
+#include "core/stages/free_space_check.h"
 #include "core/stages/tracker.h"
 
 namespace vsgraphs {
@@ -99,6 +100,14 @@ bool Tracker::surfaces_agree(const Map& map, const FramePose& pose) {
   if (judged.associated >= enough_samples) return !judged.contradicts();
   // Too little common surface to tell: then the matches must tell by their number.
   return pose.inliers >= 2 * options_.recovery.min_relocalisation_inliers;
+}
+
+// The other way round, what stands now where keyframes looked through may have come since: people do.
+bool Tracker::leaves_surfaces_standing(const Map& map, const FramePose& pose) const {
+  constexpr double reach_m = 10;
+  const FreeSpaceCount count =
+      count_seen_through(map, camera_, surface_now(), pose.world_from_camera, reach_m);
+  return count.through <= options_.recovery.max_seen_through_share * count.seen;
 }
 
 }  // namespace vsgraphs

@@ -141,6 +141,29 @@ TEST_F(TrackerTest, DarknessIsCoastedAtConstantVelocityThenLostThenRecognised) {
   expect_at(next, 23);
 }
 
+// Most of the view fits, features and surfaces, but beside it the camera looks through the wall: it is another room.
+TEST_F(TrackerTest, APlaceThatLooksAlikeButHasNoWallThereIsNotRecognised) {
+  depth_ = Image<float>(width, height, static_cast<float>(wall_m));
+  Image<float> deeper = depth_;
+  for (int v = 0; v < height; ++v)
+    for (int u = width * 80 / 100; u < width; ++u) deeper.at(u, v) = static_cast<float>(1.4 * wall_m);
+  for (const bool trusting : {false, true}) {
+    map_ = Map{};
+    snapshot_ = map_.snapshot();
+    places_ = PlaceIndex{};
+    TrackerOptions options;
+    if (trusting) options.recovery.max_seen_through_share = 1;
+    tracker_ = Tracker(options, orb_, small_camera(), 1);
+    slide(15);
+    for (int i = 15; i < 35; ++i) track_dark(i * frame_s);
+    const ImageView<std::uint8_t> wall = wall_.view();
+    const TrackedFrame back =
+        track_images(35 * frame_s, {wall.data + 20, width, height, wall.stride}, deeper.view());
+    EXPECT_EQ(back.status, trusting ? TrackStatus::relocalised : TrackStatus::lost);
+    EXPECT_EQ(track(36 * frame_s, 20).status, trusting ? TrackStatus::ok : TrackStatus::relocalised);
+  }
+}
+
 TEST_F(TrackerTest, HoweverSlowTheFramesAFewAreCoasted) {
   for (int i = 0; i < 5; ++i) track(1.0 * i, 3 * i);
   for (int i = 5; i < 8; ++i) EXPECT_EQ(track_dark(1.0 * i).status, TrackStatus::coasting) << "frame " << i;
