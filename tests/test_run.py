@@ -124,15 +124,15 @@ def test_realtime_takes_the_recording_s_time(recorded: Path, tmp_path: Path, vsg
 
 def test_options_reach_the_core(recorded: Path, tmp_path: Path, vsgraphs: Program) -> None:
     settings = tmp_path / "mine.yaml"
-    settings.write_text("system:\n  seed: 5\n  max_waiting_keyframes: 4\n")
+    settings.write_text("system:\n  seed: 5\n  min_map_keyframes: 4\n")
     done = vsgraphs(
         *("run", recorded, "--out", tmp_path / "o", "--config", settings, "--max-frames", 3),
-        *("--set", "system.max_waiting_keyframes=3", "--mode", "slam"),
+        *("--set", "system.min_map_keyframes=3", "--mode", "slam"),
     )
     assert done.returncode == 0, done.stderr
     configuration = report(tmp_path / "o")["configuration"]
     assert configuration["system.seed"] == 5
-    assert configuration["system.max_waiting_keyframes"] == 3  # the command line has the last word
+    assert configuration["system.min_map_keyframes"] == 3  # the command line has the last word
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

@@ -193,14 +193,15 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
     draft.record(RemoveObservation{problem.landmark_of_point[static_cast<std::size_t>(o.landmark)],
                                    problem.keyframe_of_pose[static_cast<std::size_t>(o.pose)]});
   }
+  const std::vector<int> positions = pose_positions(draft.map(), problem);
   for (const LandmarkId id : window.passengers) {
     const Landmark* landmark = draft.map().landmarks().find(id);
     if (!landmark || landmark->observations.empty()) continue;
     const KeyframeId carrier = landmark->observations.front().keyframe;
-    const auto pose = std::find(problem.keyframe_of_pose.begin(), problem.keyframe_of_pose.end(), carrier);
-    if (pose == problem.keyframe_of_pose.end()) continue;
+    const int position = positions[carrier.index];
+    if (position < 0) continue;
     const Se3& before = draft.map().keyframes().find(carrier)->world_from_camera;
-    const Se3& after = bundle.poses[static_cast<std::size_t>(pose - problem.keyframe_of_pose.begin())];
+    const Se3& after = bundle.poses[static_cast<std::size_t>(position)];
     draft.record(MoveLandmark{id, after * (before.inverse() * landmark->point_in_world)});
   }
   move_passenger_planes(problem, draft);

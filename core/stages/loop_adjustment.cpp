@@ -19,16 +19,17 @@ FullAdjustment::FullAdjustment(Snapshot snapshot, const MeasurementModel& model,
 
 bool FullAdjustment::run(const std::function<bool()>& stop, TraceSink* trace) {
   const Span span(trace, "full_adjustment");
-  window_ = whole_map(*snapshot_);
-  problem_ = build_problem(*snapshot_, window_, model_);
-  report_ = solve_bundle(problem_.bundle, options_, stop);
-  return !report_.stopped;
-}
-
-MapEdit FullAdjustment::edit() const {
+  const Window window = whole_map(*snapshot_);
+  WindowProblem problem = build_problem(*snapshot_, window, model_);
+  report_ = solve_bundle(problem.bundle, options_, stop);
+  if (report_.stopped) return false;
   Draft draft(snapshot_);
-  apply_solution(window_, problem_, report_, draft);
-  return draft.take();
+  apply_solution(window, problem, report_, draft);
+  // Windows may move it meanwhile; all others were worked out as seen from here.
+  for (const KeyframeId id : window.fixed)
+    draft.record(MoveKeyframe{id, snapshot_->keyframes().find(id)->world_from_camera});
+  edit_ = draft.take();
+  return true;
 }
 
 }  // namespace vsgraphs

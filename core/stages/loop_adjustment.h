@@ -26,15 +26,14 @@ class FullAdjustment {
   const Map& base() const { return *snapshot_; }  // the map it was asked for
   int iterations() const { return report_.iterations; }
   // What it came to, based on base(). After run().
-  MapEdit edit() const;
+  const MapEdit& edit() const { return edit_; }
 
  private:
   Snapshot snapshot_;
   MeasurementModel model_;
   BundleOptions options_;
-  Window window_;
-  WindowProblem problem_;
   SolveReport report_;
+  MapEdit edit_;
 };
 
 }  // namespace vsgraphs

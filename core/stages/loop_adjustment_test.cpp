@@ -54,6 +54,15 @@ TEST_F(FullAdjustmentTest, BringsTheMapToTheTruth) {
   EXPECT_LT(worst_error_m(world_.map), 0.001);
 }
 
+TEST_F(FullAdjustmentTest, SaysWhereTheKeyframeStandsThatHeldAllOthers) {
+  FullAdjustment adjustment(snapshot_, model_);
+  EXPECT_TRUE(adjustment.run());
+  const Se3 oldest = snapshot_->keyframes().find(world_.ids[0])->world_from_camera;
+  world_.map.apply(MoveKeyframe{world_.ids[0], oldest.retract(Vector6d::Constant(0.01))});
+  world_.map.apply(adjustment.edit());
+  EXPECT_LT(worst_error_m(world_.map), 0.001) << "though a window moved it meanwhile";
+}
+
 TEST_F(FullAdjustmentTest, StopsBetweenIterations) {
   FullAdjustment adjustment(snapshot_, model_);
   int asked = 0;

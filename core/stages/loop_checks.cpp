@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/solve/pose_covariance.h"
-#include "core/vision/depth_sampling.h"
 
 namespace vsgraphs {
 

@@ -69,8 +69,8 @@ bool stays_upright(const Se3& correction, const std::optional<Eigen::Vector3d>& 
                    const std::optional<Eigen::Vector3d>& up_standing, const LoopCheckOptions& options);
 
 bool leaves_free_space_free(const FreeSpaceCount& count, const LoopCheckOptions& options);
-// Of two maps side by side in one, all their keyframes against each other: two rooms may look alike and stand alike where the camera
-// stands, but what surrounds them differs.
+// Of two maps side by side, keyframes from all over the one against such of the other: two rooms may look alike, and stand alike
+// where the camera stands, but what surrounds them differs.
 bool neighbours_agree(const FreeSpaceCount& count, const LoopCheckOptions& options);
 
 // How many standard deviations of `drift` (and of the alignment itself) lie between where the map has the keyframe, seen from

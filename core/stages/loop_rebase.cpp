@@ -58,18 +58,27 @@ class Rebaser {
     return id;  // the first of all: its correction is still the identity
   }
 
-  // From where the edit has the first keyframe that observed something, living or retired, to where that keyframe ends up.
+  // From where the edit has a keyframe that observed something to where that keyframe ends up: the first one that lives in both
+  // maps, else the first one at all, through its anchor.
   template <typename Observation>
   std::optional<Se3> way_of_first(const std::vector<Observation>& observations) const {
     for (const Observation& o : observations) {
-      const auto in_old = old_.reanchor({o.keyframe, Se3{}});
-      const auto in_now = now_.reanchor({o.keyframe, Se3{}});
-      if (!in_old || !in_now) continue;
-      const auto& edited = edited_[in_old->keyframe.index];
-      const Se3 there = edited ? *edited * in_old->keyframe_from_camera : *old_.resolve(*in_old);
-      return corrections_[in_now->keyframe.index] * *now_.resolve(*in_now) * there.inverse();
+      if (old_.keyframes().contains(o.keyframe) && now_.keyframes().contains(o.keyframe))
+        return way_of(o.keyframe);
+    }
+    for (const Observation& o : observations) {
+      if (const auto way = way_of(o.keyframe)) return way;
     }
     return std::nullopt;
+  }
+
+  std::optional<Se3> way_of(KeyframeId id) const {
+    const auto in_old = old_.reanchor({id, Se3{}});
+    const auto in_now = now_.reanchor({id, Se3{}});
+    if (!in_old || !in_now) return std::nullopt;
+    const auto& edited = edited_[in_old->keyframe.index];
+    const Se3 there = edited ? *edited * in_old->keyframe_from_camera : *old_.resolve(*in_old);
+    return corrections_[in_now->keyframe.index] * *now_.resolve(*in_now) * there.inverse();
   }
 
   void say(const AddKeyframe&, std::vector<EditOperation>&) { refuse(); }

@@ -85,6 +85,7 @@ std::optional<FramePose> Tracker::follow(const Map& map, double seconds, TraceSi
     pose = refine_on_local_map(map, *pose, last_->pose.keyframe, options_.local_search_radius_px);
   }
   if (pose && guessed && !surfaces_agree(map, *pose)) pose.reset();
+  if (pose && leaps(*pose) && !leaves_surfaces_standing(map, *pose)) pose.reset();
   if (pose && !believable(pose->world_from_camera, seconds)) pose.reset();
   if (!pose || pose->inliers < options_.few_inliers) {
     const Span span(trace, "align_surfaces");

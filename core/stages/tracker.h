@@ -121,6 +121,8 @@ class Tracker {
   PosePriorTerm motion_prior(const Se3& predicted, double seconds) const;
   // Do the frame's surfaces lie where the keyframes around that pose saw them?
   bool surfaces_agree(const Map& map, const FramePose& pose);
+  // Turned so far that the same poster in another room would be in view where the prediction looks for it.
+  bool leaps(const FramePose& pose) const;
   // Or does it look through walls that any keyframe saw? A corner of another room may look, and stand, like this one.
   bool leaves_surfaces_standing(const Map& map, const FramePose& pose) const;
   const DepthGrid& surface_now() const { return *now_.surface; }

@@ -102,11 +102,17 @@ bool Tracker::surfaces_agree(const Map& map, const FramePose& pose) {
   return pose.inliers >= 2 * options_.recovery.min_relocalisation_inliers;
 }
 
+bool Tracker::leaps(const FramePose& pose) const {
+  constexpr double far_rad = 0.2;
+  return rotation_angle((last_world_->inverse() * pose.world_from_camera).rotation()) > far_rad;
+}
+
 // The other way round, what stands now where keyframes looked through may have come since: people do.
 bool Tracker::leaves_surfaces_standing(const Map& map, const FramePose& pose) const {
-  constexpr double reach_m = 10;
+  // Those around alone: what was seen on another visit may have drifted away from them.
   const FreeSpaceCount count =
-      count_seen_through(map, camera_, surface_now(), pose.world_from_camera, reach_m);
+      count_seen_through(map, aligner_.sampler(), camera_.depth_noise, local_map_.keyframes(), surface_now(),
+                         pose.world_from_camera);
   return count.through <= options_.recovery.max_seen_through_share * count.seen;
 }
 

@@ -16,6 +16,8 @@ std::string prefix(std::uint32_t number) { return "map" + std::to_string(number)
 MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
   MapState state;
   state.map = std::make_shared<const Map>(load_map(archive, name));
+  if (state.map->keyframes().index_bound() > PlaceSegment::most_keyframes)
+    archive.damaged("it numbers more keyframes than there can be");
   if (archive.has(name + "/places")) {
     auto places = std::make_shared<PlaceIndex>();
     archive.read(name + "/places", *places);

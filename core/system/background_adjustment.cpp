@@ -4,13 +4,14 @@
 
 namespace vsgraphs {
 
-void BackgroundAdjustment::work_on(const std::shared_ptr<FullAdjustment>& wanted) {
+void BackgroundAdjustment::work_on(const std::shared_ptr<FullAdjustment>& wanted, std::int64_t frame) {
   if (wanted == current_) return;
   stop();
   current_ = wanted;
   if (!current_) return;
   stop_ = finished_ = false;
   failure_ = nullptr;
+  spans_.set_frame(frame);
   thread_ = std::thread([this] { run(*current_); });
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -21,8 +22,9 @@ class BackgroundAdjustment {
   BackgroundAdjustment(const BackgroundAdjustment&) = delete;
   BackgroundAdjustment& operator=(const BackgroundAdjustment&) = delete;
 
-  // The adjustment wanted from here on; null: none. Another one that was under way is stopped, which takes one iteration.
-  void work_on(const std::shared_ptr<FullAdjustment>& wanted);
+  // The adjustment wanted from here on; null: none. Another one that was under way is stopped between two iterations, or when it
+  // has been set up: waits for that. `frame`: that the timeline names.
+  void work_on(const std::shared_ptr<FullAdjustment>& wanted, std::int64_t frame);
   // Whether `adjustment` is the one worked on and has run. Rethrows what made it fail.
   bool has_finished(const std::shared_ptr<FullAdjustment>& adjustment) const;
   // Until the one worked on has run.

@@ -32,16 +32,17 @@ class BackgroundAdjustmentTest : public ::testing::Test {
 TEST_F(BackgroundAdjustmentTest, ComesToWhatItComesToInTheForeground) {
   const auto beside = of_this_map(), here = of_this_map();
   EXPECT_FALSE(background_.has_finished(beside));
-  background_.work_on(beside);
+  background_.work_on(beside, 7);
   EXPECT_EQ(done_.pop(), 1) << "who waits is told";
   EXPECT_TRUE(background_.has_finished(beside));
   EXPECT_FALSE(background_.has_finished(here)) << "that is another one";
   EXPECT_FALSE(background_.has_finished(nullptr));
   here->run();
   EXPECT_EQ(beside->edit().hash(), here->edit().hash());
-  background_.work_on(nullptr);
+  background_.work_on(nullptr, 0);
   ASSERT_EQ(background_.spans().spans().size(), 1U);
   EXPECT_STREQ(background_.spans().spans()[0].name, "full_adjustment");
+  EXPECT_EQ(background_.spans().spans()[0].frame, 7);
 }
 
 TEST_F(BackgroundAdjustmentTest, AnotherOneWantedStopsTheFirst) {
@@ -50,17 +51,18 @@ TEST_F(BackgroundAdjustmentTest, AnotherOneWantedStopsTheFirst) {
       MoveKeyframe{world_.ids[3], world_.truth[3].retract((Vector6d() << 1, 2, 1, 1, 1, 1).finished())});
   snapshot_ = world_.map.snapshot();
   const auto first = of_this_map(1'000'000), second = of_this_map();
-  background_.work_on(first);
-  background_.work_on(second);
-  background_.work_on(second);  // is under way already
+  background_.work_on(first, 0);
+  background_.work_on(second, 0);
+  background_.work_on(second, 0);  // is under way already
   background_.wait();
   EXPECT_TRUE(background_.has_finished(second));
   EXPECT_FALSE(background_.has_finished(first));
+  EXPECT_EQ(done_.size(), 1U) << "the first one never came to its end";
 }
 
 TEST_F(BackgroundAdjustmentTest, WhatFailsIsThrownWhereItIsAskedFor) {
   const auto impossible = of_this_map(-1);
-  background_.work_on(impossible);
+  background_.work_on(impossible, 0);
   EXPECT_EQ(done_.pop(), 1);
   EXPECT_THROW(background_.has_finished(impossible), std::exception);
 }

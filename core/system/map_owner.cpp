@@ -41,6 +41,10 @@ void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool(
 void MapOwner::end_run() {
   if (inserted_ == 0) return;
   settle();
+  while (adjustment_) {
+    run_adjustment();
+    finish_adjustment();
+  }
   if (options_.builds_structure()) find_rooms(true);
 }
 
@@ -111,12 +115,13 @@ void MapOwner::adjust_from_here() {
   adjust_again_ = adjustment_ != nullptr;
   if (adjust_again_) return;
   adjustment_ = std::make_shared<FullAdjustment>(snapshot_, model_);
-  completed_before_adjustment_ = completed_;
+  if (!completed_before_adjustment_) completed_before_adjustment_ = completed_;
 }
 
 void MapOwner::drop_adjustment() {
   adjustment_.reset();
   adjust_again_ = false;
+  completed_before_adjustment_.reset();
 }
 
 void MapOwner::take_in_adjustment() {
@@ -134,6 +139,9 @@ void MapOwner::take_in_adjustment() {
 void MapOwner::finish_adjustment() {
   take_in_adjustment();
   if (options_.builds_structure()) find_rooms(false);
+  if (adjustment_) return;
+  completed_before_adjustment_.reset();
+  publish();
 }
 
 void MapOwner::find_rooms(bool last) {
@@ -163,8 +171,8 @@ void MapOwner::apply(const MapEdit& edit, EditEvent event) {
 void MapOwner::publish() {
   if (follow(*snapshot_, places_) || !published_places_)
     published_places_ = std::make_shared<const PlaceIndex>(places_);
-  const std::int64_t completed = adjustment_ ? completed_before_adjustment_ : completed_;
-  cell_.publish({snapshot_, inserted_, completed, published_places_, published_dormant_, counts_});
+  cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_), published_places_,
+                 published_dormant_, counts_});
 }
 
 }  // namespace vsgraphs

@@ -28,7 +28,8 @@ class MapOwner {
   // All that a keyframe brings about, in the order of the steps below; `stop_refining` is asked between iterations of the
   // window's adjustment. Afterwards adjustment() is what the executor has to run, here or beside.
   void work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining);
-  // At the end of the run: the map this run made most of is the one given out, with its rooms.
+  // At the end of the run: the map this run made most of is the one given out, adjusted if that is still to be done, with its
+  // rooms.
   void end_run();
 
   // One step each: request -> keyframe in the map; its planes -> map; a late segmentation of a keyframe -> its planes
@@ -48,7 +49,7 @@ class MapOwner {
   // another one, or none, once a loop has moved the map or another map is worked on. When it has run, take_in_adjustment()
   // brings what it came to into the map as it is by then.
   const std::shared_ptr<FullAdjustment>& adjustment() const { return adjustment_; }
-  void run_adjustment() { adjustment_->run({}, &spans_); }  // on the owner's thread
+  void run_adjustment() { adjustment_->run({}, &spans_); }  // here, on the owner's thread
   void take_in_adjustment();
   // With the rooms of the adjusted map.
   void finish_adjustment();
@@ -66,6 +67,7 @@ class MapOwner {
   void refine(const std::function<bool()>& stop);
 
   std::uint64_t version() const { return map_.version(); }
+  std::int64_t newest_frame() const { return newest_frame_; }  // that became a keyframe
   const std::vector<EditEvent>& edits() const { return edits_; }
   // Of the map worked on; a copy. Null where rooms are not sought.
   std::shared_ptr<const FreeSpace> free_space() const;
@@ -77,6 +79,7 @@ class MapOwner {
     MapState state;
     int made = 0;  // keyframes of this run
     bool loaded = false;
+    bool to_adjust = false;  // it was put to sleep before that was done
   };
   struct FoundLoop {
     MapEdit edit;
@@ -116,7 +119,7 @@ class MapOwner {
   std::optional<FoundJoin> join_;
   std::shared_ptr<FullAdjustment> adjustment_;
   bool adjust_again_ = false;  // landmarks were merged while one was under way
-  std::int64_t completed_before_adjustment_ = 0;
+  std::optional<std::int64_t> completed_before_adjustment_;
   AtlasCounts counts_;
   MeasurementModel model_;
   SnapshotCell& cell_;

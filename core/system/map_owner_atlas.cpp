@@ -21,7 +21,7 @@ void MapOwner::start_from(const AtlasState& known) {
   for (const MapState& state : known.maps) {
     unused = FirstIds::later(unused, state.map->unused_ids());
     if (state.map->keyframes().size() == 0) continue;
-    dormant_.push_back({{state.map, index_of(state, place_options_), state.free_space}, 0, true});
+    dormant_.push_back({{state.map, index_of(state, place_options_), state.free_space}, 0, true, false});
   }
   if (!dormant_.empty()) {
     const MapState last = dormant_.back().state;
@@ -81,7 +81,9 @@ void MapOwner::put_to_sleep() {
   const std::uint32_t age = first_index(*snapshot_);
   const auto behind = std::find_if(dormant_.begin(), dormant_.end(),
                                    [&](const DormantMap& d) { return first_index(*d.state.map) > age; });
-  dormant_.insert(behind, {{snapshot_, published_places_, free_space()}, made_, loaded_});
+  dormant_.insert(behind,
+                  {{snapshot_, published_places_, free_space()}, made_, loaded_, adjustment_ != nullptr});
+  drop_adjustment();
 }
 
 void MapOwner::drop_small_maps() {
@@ -93,7 +95,6 @@ void MapOwner::drop_small_maps() {
 
 void MapOwner::open_new_map(std::int64_t frame) {
   const OpenMap opening{map_.unused_ids(), map_.version()};
-  drop_adjustment();
   put_to_sleep();
   drop_small_maps();
   map_ = Map{};
@@ -110,7 +111,6 @@ void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) 
   const DormantMap woken = dormant_[index];
   dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(index));
   const OpenMap opening{map_.unused_ids(), map_.version()};
-  drop_adjustment();
   put_to_sleep();
   map_ = *woken.state.map;
   places_ = *woken.state.places;
@@ -120,6 +120,7 @@ void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) 
   loaded_ = woken.loaded;
   publish_dormant();
   apply({opening.version, {opening}}, {why, frame, 0, 0});
+  if (woken.to_adjust) adjust_from_here();
 }
 
 void MapOwner::look_for_join() {

@@ -12,7 +12,7 @@
 //   resume FRAME HASH                 it hangs on a dormant map, which is worked on again
 //   join FRAME HASH                   it showed a place of a dormant map: the two became one
 //   settle FRAME HASH                 at the end: the map this run made most of is taken up again
-//   adjust FRAME ITERATIONS HASH      after which the whole map was adjusted with that many iterations
+//   adjust FRAME ITERATIONS HASH      after which the adjustment of the whole map, asked for before, was taken in
 //   refine FRAME ITERATIONS HASH      its window was adjusted with that many iterations
 #pragma once
 

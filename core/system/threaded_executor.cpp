@@ -32,7 +32,7 @@ class ThreadedExecutor : public Executor {
     if (!options_.realtime) wait_for_mapper(frame.timestamp_s);
     TrackedFrame result = tracking_.track(frame, cell_.take());
     if (result.keyframe_request) {
-      unfinished_.push_back(frame.timestamp_s);
+      if (!options_.realtime) unfinished_.push_back(frame.timestamp_s);
       requests_.push({result.keyframe_request, 0, nullptr, nullptr});
     }
     // Nothing can be tracked before a map's first keyframe stands.
@@ -93,12 +93,13 @@ class ThreadedExecutor : public Executor {
       failure_ = std::make_exception_ptr(std::runtime_error(std::string("mapping failed: ") + error.what()));
       requests_.close();
     }
+    background_.work_on(nullptr, 0);
     cell_.close();
   }
 
   void adjust_beside() {
     if (background_.has_finished(owner_.adjustment())) owner_.finish_adjustment();
-    background_.work_on(owner_.adjustment());
+    background_.work_on(owner_.adjustment(), owner_.newest_frame());
   }
 
   void adjust_to_the_end() {

@@ -33,10 +33,11 @@ class Ballot {
  public:
   Ballot(std::size_t keyframes, std::span<const std::uint8_t> removed, int max_distance)
       : removed_(removed), slots_(keyframes), best_(keyframes, no_hit) {
-    // Nearly as probable as a flip of that many bits: a Gauss bell.
-    const double sigma = 0.6 * std::max(max_distance, 1);
+    // A Gauss bell that has fallen to a seventh where hits end.
+    const double sigma = 0.5 * std::max(max_distance, 1);
     for (int d = 0; d <= max_distance; ++d)
       closeness_.push_back(static_cast<float>(std::exp(-d * d / (2 * sigma * sigma))));
+    near_ = max_distance * 4 / 5;
   }
 
   // All hits of one feature, in several parts. Only the nearest one in each keyframe counts.
@@ -59,8 +60,11 @@ class Ballot {
           slots_[hit.owner.keyframe()][((hit.owner.angle() - angle) & (steps - 1)) / (steps / turn_bins)];
       bin.weight += weight * closeness_[static_cast<std::size_t>(hit.distance)];
       ++bin.count;
-      bin.asked_in |= ImageParts::flag(part);
-      bin.found_in |= ImageParts::flag(hit.owner.part());
+      // Chance hits are far off, and all over the image.
+      if (hit.distance <= near_) {
+        bin.asked_in |= ImageParts::flag(part);
+        bin.found_in |= ImageParts::flag(hit.owner.part());
+      }
       best_[hit.owner.keyframe()] = no_hit;
     }
     hits_.clear();
@@ -93,6 +97,7 @@ class Ballot {
   std::vector<std::int32_t> best_;
   std::vector<Hit> hits_;
   std::vector<float> closeness_;  // what a hit at that distance is worth
+  int near_ = 0;                  // distance up to which a hit says where in the image
 };
 
 // The buckets one feature has to look into, looked up ahead of time so that memory can be on its way.
@@ -156,7 +161,9 @@ void PlaceIndex::add(KeyframeId keyframe, const FeatureSet& features) {
 
 bool PlaceIndex::restore(std::vector<PlaceSegment::Content> segments) {
   const auto known = [this](std::uint32_t index) { return index < ids_.size() && ids_[index].valid(); };
-  if (removed_.size() != ids_.size() || covered_.size() != ids_.size() || options_.features_per_keyframe < 0)
+  if (removed_.size() != ids_.size() || covered_.size() != ids_.size() ||
+      options_.features_per_keyframe < 0 || options_.max_distance < 0 ||
+      options_.max_distance > PlaceSignature::bits)
     return false;
   size_ = 0;
   for (std::uint32_t i = 0; i < ids_.size(); ++i) {
@@ -223,7 +230,7 @@ std::vector<KeyframeId> PlaceIndex::keyframes() const {
 }
 
 std::size_t PlaceIndex::bytes() const {
-  std::size_t sum = ids_.size() * sizeof(KeyframeId) + removed_.size();
+  std::size_t sum = ids_.size() * (sizeof(KeyframeId) + sizeof(covered_[0])) + removed_.size();
   for (const auto& segment : segments_) sum += segment->bytes();
   return sum;
 }

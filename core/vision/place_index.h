@@ -28,7 +28,7 @@ namespace vsgraphs {
 
 struct PlaceIndexOptions {
   int features_per_keyframe = 600;
-  int max_distance = 20;
+  int max_distance = 25;
 };
 template <FieldsOf<PlaceIndexOptions> T>
 void visit_fields(T& v, auto& field) {

@@ -34,7 +34,7 @@ PlaceSegment::PlaceSegment(Content content)
 
 PlaceSegment::PlaceSegment(KeyframeId keyframe, const FeatureSet& features, int count)
     : keyframes_{keyframe}, begin_(bucket_count + 1, 0) {
-  VSG_INVARIANT(keyframe.index < 1U << (32 - part_bits - angle_bits));
+  VSG_INVARIANT(keyframe.index < most_keyframes);
   const ImageParts parts(features);
   const int n = std::min(count, features.size());
   for (int i = 0; i < n; ++i) ++begin_[PlaceSignature::of(features.descriptor(i)).key() + 1];

@@ -18,7 +18,7 @@ struct PlaceSignature {
   std::uint64_t low = 0, high = 0;
 
   static PlaceSignature of(const Descriptor& d) { return {d.words[0], d.words[1]}; }
-  static constexpr int key_bits = 16;
+  static constexpr int key_bits = 16, bits = 128;
   std::uint32_t key() const { return static_cast<std::uint32_t>(low & 0xffff); }
   int distance(const PlaceSignature& other) const {
     return std::popcount(low ^ other.low) + std::popcount(high ^ other.high);
@@ -33,6 +33,7 @@ void visit_fields(T& v, auto& field) {
 class PlaceSegment {
  public:
   static constexpr std::uint32_t angle_bits = 6, part_bits = 6;
+  static constexpr std::uint32_t most_keyframes = 1U << (32 - part_bits - angle_bits);
   // 64 to the full turn.
   static std::uint32_t angle_steps(float angle_rad);
 
