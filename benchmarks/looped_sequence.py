@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from relocalisation import aligned
+from relocalisation import aligned, rmse_mm, true_positions
 
 import vsgraphs
 from vsgraphs.cli.settings import apply_assignments
@@ -101,14 +101,9 @@ class Walker:
             return None
         stamps, poses = self.slam.trajectory()
         recorded = np.array(self.recorded)[np.round(stamps / self.step_s).astype(int)]
-        within = (recorded >= self.truth.timestamps[0]) & (recorded <= self.truth.timestamps[-1])
-        true = np.column_stack(
-            [np.interp(recorded[within], self.truth.timestamps, self.truth.positions[:, i]) for i in range(3)]
-        )
+        within, true = true_positions(self.truth, recorded)
         positions = poses[within, :3, 3]
-        turn, shift = aligned(positions, true)
-        off_m = np.linalg.norm(positions @ turn.T + shift - true, axis=1)
-        return float(1e3 * np.sqrt(np.mean(off_m**2)))
+        return rmse_mm(positions, true, aligned(positions, true))
 
 
 def main() -> None:

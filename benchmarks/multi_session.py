@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from relocalisation import aligned
+from relocalisation import aligned, rmse_mm, true_positions
 
 import vsgraphs
 from vsgraphs.cli.settings import apply_assignments
@@ -40,11 +40,8 @@ class Session:
         self.slam.finish()
         stamps, poses = self.slam.trajectory()
         truth = read_tum_trajectory(folder / "groundtruth.txt")
-        within = (stamps >= truth.timestamps[0]) & (stamps <= truth.timestamps[-1])
+        within, self.true = true_positions(truth, stamps)
         self.positions = poses[within, :3, 3]
-        self.true = np.column_stack(
-            [np.interp(stamps[within], truth.timestamps, truth.positions[:, i]) for i in range(3)]
-        )
 
     def save(self, file: Path) -> None:
         """All of its maps."""
@@ -56,9 +53,7 @@ class Session:
 
     def ate_mm(self, alignment: tuple[np.ndarray, np.ndarray]) -> float:
         """RMSE of all positions."""
-        turn, shift = alignment
-        off_m = np.linalg.norm(self.positions @ turn.T + shift - self.true, axis=1)
-        return float(1e3 * np.sqrt(np.mean(off_m**2)))
+        return rmse_mm(self.positions, self.true, alignment)
 
     def counts(self) -> str:
         """What the map holds."""

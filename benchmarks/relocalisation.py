@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 import vsgraphs
-from vsgraphs.trajectory import read_tum_trajectory
+from vsgraphs.trajectory import Trajectory, read_tum_trajectory
 
 PLACES, DARK_S, SEEN_S, MAX_ERROR_M = 10, 3.0, 1.0, 0.05
 
@@ -32,6 +32,20 @@ def aligned(source: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndar
     u, _, vt = np.linalg.svd((target - target_middle).T @ (source - middle))
     turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt
     return turn, target_middle - turn @ middle
+
+
+def true_positions(truth: Trajectory, stamps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which stamps the truth covers (bool), and where the camera was then (N, 3)."""
+    within = (stamps >= truth.timestamps[0]) & (stamps <= truth.timestamps[-1])
+    axes = [np.interp(stamps[within], truth.timestamps, truth.positions[:, i]) for i in range(3)]
+    return within, np.column_stack(axes)
+
+
+def rmse_mm(positions: np.ndarray, true: np.ndarray, alignment: tuple[np.ndarray, np.ndarray]) -> float:
+    """Of positions (N, 3) in m, once aligned."""
+    turn, shift = alignment
+    off_m = np.linalg.norm(positions @ turn.T + shift - true, axis=1)
+    return float(1e3 * np.sqrt(np.mean(off_m**2)))
 
 
 @dataclass

@@ -1,5 +1,7 @@
 #include "core/system/map_owner.h"
 
+#include <utility>
+
 #include "core/base/check.h"
 #include "core/stages/loop_rebase.h"
 
@@ -41,10 +43,7 @@ void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool(
 void MapOwner::end_run() {
   if (inserted_ == 0) return;
   settle();
-  while (adjustment_) {
-    run_adjustment();
-    finish_adjustment();
-  }
+  adjust_here();
   if (options_.builds_structure()) find_rooms(true);
 }
 
@@ -124,10 +123,16 @@ void MapOwner::drop_adjustment() {
   completed_before_adjustment_.reset();
 }
 
+void MapOwner::adjust_here() {
+  while (adjustment_) {
+    run_adjustment();
+    finish_adjustment();
+  }
+}
+
 void MapOwner::take_in_adjustment() {
   VSG_INVARIANT(adjustment_ != nullptr);
-  const std::shared_ptr<FullAdjustment> done = std::move(adjustment_);
-  adjustment_ = nullptr;
+  const std::shared_ptr<FullAdjustment> done = std::exchange(adjustment_, nullptr);
   const MapEdit edit = [&] {
     const Span span(&spans_, "rebase_adjustment");
     return rebase(done->edit(), done->base(), *snapshot_);

@@ -50,6 +50,8 @@ class MapOwner {
   // brings what it came to into the map as it is by then.
   const std::shared_ptr<FullAdjustment>& adjustment() const { return adjustment_; }
   void run_adjustment() { adjustment_->run({}, &spans_); }  // here, on the owner's thread
+  // Runs and finishes what is to be adjusted, here, until nothing is.
+  void adjust_here();
   void take_in_adjustment();
   // With the rooms of the adjusted map.
   void finish_adjustment();

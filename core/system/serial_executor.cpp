@@ -14,10 +14,7 @@ class SerialExecutor : public Executor {
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     TrackedFrame result = tracking_.track(frame, cell_.take());
     if (result.keyframe_request) owner_.work_on(*result.keyframe_request, {});
-    while (owner_.adjustment()) {
-      owner_.run_adjustment();
-      owner_.finish_adjustment();
-    }
+    owner_.adjust_here();
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {

@@ -68,10 +68,7 @@ TEST(WholeMapAdjustment, ThatComesLateFitsTheMapThatWentOn) {
   walk.walk(0, 240);
   ASSERT_EQ(walk.owner().adjustment(), asked_for) << "nothing moved the map: it is still wanted";
   EXPECT_GT(walk.content().snapshot->version(), asked_for->base().version());
-  while (walk.owner().adjustment()) {
-    walk.owner().run_adjustment();
-    walk.owner().finish_adjustment();
-  }
+  walk.owner().adjust_here();
   EXPECT_EQ(walk.content().completed, walk.content().inserted);
   EXPECT_LT(walk.largest_error_m(), 0.03);
   walk.walk(240, 400);
