@@ -20,7 +20,7 @@ struct LoopCheckOptions {
   double max_disagreeing_share = 0.35;
   double max_seen_through_share = 0.35;
   double max_contradicted_share = 0.01;
-  double max_drift_sigmas = 5.0;
+  double max_drift_sigmas = 4.0;
 };
 
 template <typename Visitor>

@@ -23,7 +23,16 @@ struct Outcome {
   std::optional<MapEdit> edit;
 };
 
-Outcome close_at_end(LoopWorld& world, const LoopCloserOptions& options = {}) {
+// These worlds drift faster than a camera does, so that few keyframes will do.
+LoopCloserOptions expecting_much_drift() {
+  LoopCloserOptions options;
+  options.drift.share_of_way = 0.02;
+  options.drift.turn_deg_per_m = 0.2;
+  options.checks.max_drift_sigmas = 5;
+  return options;
+}
+
+Outcome close_at_end(LoopWorld& world, const LoopCloserOptions& options = expecting_much_drift()) {
   LoopCloser closer(options, world.camera, world.pyramid, 1);
   Outcome outcome;
   outcome.edit = closer.close(world.ids.back(), world.map.snapshot(), world.places, outcome.report, nullptr);
@@ -77,7 +86,7 @@ TEST(LoopCloser, WithoutDriftMergesButMovesNothing) {
 
 TEST(LoopCloser, PausesAfterALoop) {
   LoopWorld world(drifting());
-  LoopCloser closer({}, world.camera, world.pyramid, 1);
+  LoopCloser closer(expecting_much_drift(), world.camera, world.pyramid, 1);
   LoopReport report;
   EXPECT_TRUE(closer.close(world.ids[32], world.map.snapshot(), world.places, report, nullptr));
   EXPECT_FALSE(closer.close(world.ids[33], world.map.snapshot(), world.places, report, nullptr));
@@ -90,7 +99,7 @@ TEST(LoopCloser, AsksTheNeighbours) {
   options.keyframes = 16;
   options.ghost = 0;
   LoopWorld world(options);
-  LoopCloserOptions believes_drift;
+  LoopCloserOptions believes_drift = expecting_much_drift();
   believes_drift.checks.max_drift_sigmas = 100;
   EXPECT_EQ(close_at_end(world, believes_drift).report.verdict, LoopVerdict::unsupported);
   believes_drift.alignment.supporters = 0;
@@ -115,7 +124,7 @@ TEST_P(LoopCloserRefusal, ComesFromItsCheckAlone) {
   const Outcome refused = close_at_end(world);
   EXPECT_EQ(refused.report.verdict, GetParam().verdict) << to_string(refused.report.verdict);
   EXPECT_FALSE(refused.edit.has_value());
-  LoopCloserOptions disarmed;
+  LoopCloserOptions disarmed = expecting_much_drift();
   GetParam().disarm(disarmed);
   const Outcome let_through = close_at_end(world, disarmed);
   EXPECT_EQ(let_through.report.verdict, LoopVerdict::closed) << to_string(let_through.report.verdict);

@@ -15,8 +15,8 @@ namespace vsgraphs {
 struct DriftOptions {
   double step_m = 0.005;
   double step_deg = 0.1;
-  double share_of_way = 0.02;
-  double turn_deg_per_m = 0.2;
+  double share_of_way = 0.004;
+  double turn_deg_per_m = 0.02;
   double share_of_turn = 0.01;
   double link_share = 0.1;
   double gap_share = 0.2;

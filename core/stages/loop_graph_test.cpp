@@ -7,6 +7,7 @@
 
 #include "core/map/test_map.h"
 #include "core/solve/pose_covariance.h"
+#include "core/stages/loop_checks.h"
 
 namespace vsgraphs {
 namespace {
@@ -111,6 +112,25 @@ TEST(LoopGraph, DriftGrowsWithTheWay) {
   for (int k = 0; k < 20; ++k) across += std::pow(turn * 0.3 * k, 2);
   EXPECT_NEAR(far->covariance(1, 1), across, 1e-6);
   EXPECT_LT(near->covariance(1, 1), far->covariance(1, 1));
+}
+
+// An office's length is 3.8 m: after 60 m of way, two like ones next to each other must not be taken for one; what
+// tracking loses on that way must be given back.
+TEST(LoopGraph, TheDefaultPriorPartsLikeRoomsFromDrift) {
+  const Row row(201, 0.3, 100);
+  const KeyframeGraph graph = graph_of(row.map, {});
+  const auto drift = drift_between(graph, {}, row.ids.front(), row.ids.back());
+  ASSERT_TRUE(drift);
+  EXPECT_NEAR(drift->way_m, 60, 1e-9);
+  const double limit = LoopCheckOptions{}.max_drift_sigmas;
+  const auto sigmas = [&](double off_m, double turned_deg) {
+    Vector6d off;
+    off << off_m, 0, 0, 0, turned_deg * rad_per_deg, 0;
+    return sigmas_of(off, drift->covariance);
+  };
+  EXPECT_LT(sigmas(0.01 * 60, 1.0), limit)
+      << "1 % of the way: the 95th percentile of what was measured in buildings";
+  EXPECT_GT(sigmas(3.8, 0), limit);
 }
 
 TEST(LoopGraph, DriftIsTheSameSeenFromEitherEnd) {

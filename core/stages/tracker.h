@@ -30,6 +30,7 @@ struct TrackerOptions {
   int local_keyframes = 20;
   int min_inliers = 20;
   int few_inliers = 120;
+  int enough_inliers = 40;
   int min_features_to_start = 100;
   double max_speed_m_per_s = 3.0;
   double max_turn_rad_per_s = 5.0;
@@ -51,6 +52,8 @@ void describe(TrackerOptions& o, Visitor& field) {
   field("min_inliers", o.min_inliers, 6, 200, "fewer inlier matches than this are no pose");
   field("few_inliers", o.few_inliers, 0, 1000,
         "with fewer inlier matches than this, depth is aligned with a keyframe's as well");
+  field("enough_inliers", o.enough_inliers, 6, 1000,
+        "a pose with this many inlier matches stands even where depth alignment fails or contradicts it");
   field("min_features_to_start", o.min_features_to_start, 20, 5000,
         "features with depth needed to start a map");
   field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0,

@@ -58,6 +58,8 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
   const auto held = hold_by_surfaces(map, reference, guess, prior, seconds);
   if (held) return held;
   matches_ = matches;
+  // Many matches stand by themselves: on leaving a room the reference's surfaces are mostly other ones than those in view.
+  if (pose->inliers >= options_.enough_inliers) return pose;
   // A few matches that the surfaces contradict are a coincidence.
   const DepthAlignment judged = aligner_.judge(surface_now(), reference, guess);
   return judged.contradicts() ? std::nullopt : pose;

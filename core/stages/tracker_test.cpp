@@ -164,6 +164,40 @@ TEST_F(TrackerTest, APlaceThatLooksAlikeButHasNoWallThereIsNotRecognised) {
   }
 }
 
+// On leaving a room the reference's surfaces are mostly other ones than those in view: a poster's worth of matches knows better.
+TEST_F(TrackerTest, EnoughMatchesStandWhereSurfacesContradict) {
+  const ImageView<std::uint8_t> wall = wall_.view();
+  // Features keep their depth; where surfaces are sampled stands another one.
+  Image<float> other_surface(width, height, static_cast<float>(wall_m));
+  for (int v = 4; v < height; v += 8)
+    for (int u = 4; u < width; u += 8) other_surface.at(u, v) = static_cast<float>(0.7 * wall_m);
+  struct Case {
+    int poster_px, enough_inliers;
+    bool stands;
+  };
+  for (const auto [poster_px, enough_inliers, stands] :
+       {Case{24, 40, true}, Case{24, 110, false}, Case{8, 40, false}}) {
+    map_ = Map{};
+    snapshot_ = map_.snapshot();
+    places_ = PlaceIndex{};
+    next_index_ = 0;
+    TrackerOptions options;
+    options.enough_inliers = enough_inliers;
+    tracker_ = Tracker(options, orb_, small_camera(), 1);
+    depth_ = Image<float>(width, height, static_cast<float>(wall_m));
+    for (int i = 0; i < 15; ++i) ASSERT_EQ(track(i * frame_s, 3 * i).status == TrackStatus::ok, i > 0);
+    Image<std::uint8_t> poster(width, height, 128);
+    for (int v = 0; v < height; ++v)
+      for (const int u : {40, width - 40 - poster_px})
+        std::copy_n(wall.data + v * wall.stride + 45 + u, poster_px, &poster.at(u, v));
+    const TrackedFrame frame = track_images(15 * frame_s, poster.view(), other_surface.view());
+    EXPECT_EQ(frame.status, stands ? TrackStatus::ok : TrackStatus::coasting) << poster_px;
+    EXPECT_EQ(frame.matches >= enough_inliers, stands) << frame.matches;
+    EXPECT_LT(frame.matches, options.few_inliers) << "surfaces would not be asked";
+    if (stands) expect_at(frame, 45, 0.02);
+  }
+}
+
 TEST_F(TrackerTest, HoweverSlowTheFramesAFewAreCoasted) {
   for (int i = 0; i < 5; ++i) track(1.0 * i, 3 * i);
   for (int i = 5; i < 8; ++i) EXPECT_EQ(track_dark(1.0 * i).status, TrackStatus::coasting) << "frame " << i;
