@@ -10,7 +10,7 @@ BIN := .venv/bin
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 10
 
-demo: ## install what is missing, build, track a camera through a simulated room, draw the result
+demo: ## install what is missing, build, map simulated rooms, compare with the truth, draw the floor plan
 	@scripts/setup
 	@scripts/demo
 

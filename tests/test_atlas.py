@@ -236,7 +236,8 @@ def test_files_that_are_no_atlas(recorded: Path, walked: Path, tmp_path: Path, v
         (tmp_path / "missing", "cannot read"),
         (tmp_path, "no ordinary file"),
     ):
-        for command in (("info", path), ("run", recorded, "--out", tmp_path / "o", "--load-atlas", path)):
+        run = ("run", recorded, "--out", tmp_path / "o", "--load-atlas", path)
+        for command in (run,) if path.is_dir() else (run, ("info", path)):  # info of a directory: of a run
             error = one_line_error(vsgraphs(*command))
             assert message in error
             assert str(path) in error

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +68,38 @@ def test_the_command(run_folder: Path, vsgraphs: Program) -> None:
     (out / "map.ply").unlink()
     done = vsgraphs("eval", "--scene", out, "--truth", truth, "--tolerance", "angle_deg=5")
     assert "map points are not scored" in done.stdout
+
+
+def test_a_run_s_directory_is_compared_as_a_whole(run_folder: Path, vsgraphs: Program) -> None:
+    out, scene = run_folder / "out", run_folder / "scene"
+    for truth in (scene, scene / "groundtruth.txt"):
+        done = vsgraphs("eval", out, "--groundtruth", truth, "--json", run_folder / "e.json")
+        assert done.returncode == 0, done.stderr
+        rows = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines() if line.strip()}
+        assert rows["rooms"][:4] == ["3", "of", "3", "0"]
+        assert rows["rooms'"][:5] == ["walls", "12", "of", "12", "0"]
+        assert rows["camera"][:3] == ["ATE", "0.00", "cm"]  # completion unknown: there is no run.json
+        figures = json.loads((run_folder / "e.json").read_text())
+        assert figures["ate"]["rmse_m"] < 1e-6
+        assert figures["scene"]["structural_elements"]["rooms"]["detected"] == 3
+    # The run knows what it was made from.
+    (out / "run.json").write_text(json.dumps({"completion": 0.5, "source": {"path": str(scene)}}))
+    done = vsgraphs("eval", out)
+    assert re.search(r"camera +50\.0 % +ATE 0\.00 cm", done.stdout)
+    (out / "run.json").write_text(json.dumps({"source": {"path": str(run_folder / "gone")}}))
+    assert "gone, which the run was made from, is gone" in one_line_error(vsgraphs("eval", out))
+
+
+def test_a_scene_graph_that_cannot_be_compared_leaves_the_trajectory(
+    run_folder: Path, vsgraphs: Program
+) -> None:
+    graph = run_folder / "out" / "scene_graph.json"
+    graph.write_text(graph.read_text()[:300])
+    done = vsgraphs("eval", run_folder / "out", "--groundtruth", run_folder / "scene")
+    assert done.returncode == 0, done.stderr
+    assert "note: the scene graph is not compared: " in done.stdout
+    assert "ATE" in done.stdout
+    assert "rooms" not in done.stdout
 
 
 def test_mistakes_are_one_line(run_folder: Path, vsgraphs: Program) -> None:

@@ -197,7 +197,7 @@ def test_the_plan_shows_rooms_doors_path_and_scale(graph: SceneGraph) -> None:
     shown = texts(svg)
     for text in ("A", "B", "C", "S", "12.0 m²", "11.8 m²", "kitchen", "2 m", "Two rooms & a corridor"):
         assert text in shown, text
-    assert "4 rooms, 41.1 m²" in next(text for text in shown if "wall face" in text)
+    assert "4 rooms, 41.1 m²" in next(text for text in shown if text.endswith("16 walls  ·  3 doors"))
     assert svg.count("A81 81") == 3  # arcs of three doors 0.9 m wide at 90 px/m
     assert "camera path" in shown
     assert svg == format_floorplan(graph, positions(graph), "Two rooms & a corridor")
@@ -270,6 +270,21 @@ def test_storeys_stand_side_by_side() -> None:
     assert {"A", "a", "S", "s"} <= set(shown)
     widths = float(re.search(r'width="(\d+)"', svg).group(1))  # type: ignore[union-attr]
     assert widths > 1500
+
+
+def test_rooms_are_closed_where_no_wall_was_seen(graph: SceneGraph) -> None:
+    for plane in graph.planes.values():
+        if plane.role == "wall":
+            plane.role = "undecided"
+    outlines = re.findall(
+        r'<path d="M[^"]*Z" fill="#[^"]*" stroke="#667085"[^>]*stroke-dasharray', format_floorplan(graph)
+    )
+    assert len(outlines) == 4
+
+
+def test_labels_can_be_read(graph: SceneGraph) -> None:
+    sizes = [float(size) for size in re.findall(r'font-size="([0-9.]+)"', format_floorplan(graph))]
+    assert min(sizes) >= 10
 
 
 def test_names_are_escaped(snapshot: Any) -> None:

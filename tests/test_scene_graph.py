@@ -201,6 +201,8 @@ def test_wall_pairs_and_faces(snapshot: tuple[Raw, Keyframes]) -> None:
     faces = [e for e in graph.edges if e.kind == "other_face"]
     assert [(e.source, e.target) for e in faces] == [("plane:1", "plane:7")]
     assert graph.planes[7].thickness_m == 0.12
+    raw["planes"][2]["thickness_m"] = 0.0  # as the core has it where no other face is known
+    assert SceneGraph.from_map(raw, keyframes).planes[2].thickness_m is None
 
 
 def test_walls_alone_are_enough(snapshot: tuple[Raw, Keyframes]) -> None:

@@ -7,16 +7,15 @@ from typing import Annotated
 
 import typer
 
-from vsgraphs.cli import completion
+from vsgraphs.cli import completion, examples
 from vsgraphs.cli.failures import set_debug, told
 
 app = typer.Typer(
     name="vsgraphs",
-    help="RGB-D SLAM and 3D scene graphs.",
+    help="RGB-D SLAM and 3D scene graphs: a recorded sequence becomes a map of rooms, doors and walls.",
     no_args_is_help=True,
     rich_markup_mode="markdown",
-    epilog="vsgraphs run FOLDER --out results, then vsgraphs view results. "
-    "vsgraphs COMMAND --help tells more.",
+    epilog=examples.PROGRAM,
     pretty_exceptions_enable=False,
 )
 
@@ -42,9 +41,7 @@ def _options(
     set_debug(on=debug)
 
 
-@app.command(
-    epilog="Example: vsgraphs run ~/rgbd_dataset_freiburg1_xyz --out results --view",
-)
+@app.command(epilog=examples.RUN)
 def run(
     source: Annotated[
         Path,
@@ -53,7 +50,15 @@ def run(
             help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D.",
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Directory for the results.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            "-o",
+            help="Directory for the results; those of an earlier run in it are replaced.",
+            show_default="a new ./NAME_vsgraphs, numbered",
+        ),
+    ] = None,
     camera: Annotated[
         str | None,
         typer.Option(
@@ -64,7 +69,7 @@ def run(
     mode: Annotated[
         str | None,
         typer.Option(
-            help="slam: landmarks; bc: and walls, ground; full: and rooms (default).",
+            help="full (default): rooms and all else; bc: walls, ground, landmarks; slam: landmarks.",
             autocompletion=completion.chosen_from("slam", "bc", "full"),
         ),
     ] = None,
@@ -133,8 +138,10 @@ def run(
         ),
     ] = None,
 ) -> None:
-    """Track a camera through a recorded sequence and build the map."""
-    with told():
+    """Track a camera through a recorded sequence: trajectory, map, scene graph, floor plan."""
+    from vsgraphs.cli.output import results_folder
+
+    with told(), results_folder(out, source) as folder:
         from vsgraphs.cli.run import RunRequest, run_sequence
         from vsgraphs.cli.viewing import Showing
 
@@ -149,7 +156,7 @@ def run(
         }
         request = RunRequest(
             source=source,
-            out=out,
+            out=folder,
             camera=camera,
             max_frames=max_frames,
             segmenter=segmenter,
@@ -167,10 +174,7 @@ def run(
     raise typer.Exit(code)
 
 
-@app.command(
-    "eval",
-    epilog="Example: vsgraphs eval results --groundtruth FOLDER/groundtruth.txt --plot error.png",
-)
+@app.command("eval", epilog=examples.EVAL)
 def evaluate(
     trajectory: Annotated[
         Path, typer.Argument(help="Trajectory in TUM format, or the directory a run left it in.")
@@ -178,8 +182,8 @@ def evaluate(
     groundtruth: Annotated[
         Path | None,
         typer.Option(
-            help="True trajectory (any format), or the sequence's folder. Required; with --scene "
-            "groundtruth.txt beside --truth unless given."
+            help="True trajectory (any format), or the sequence's folder. Unless given: of a run's "
+            "directory the sequence it was made from; with --scene groundtruth.txt beside --truth."
         ),
     ] = None,
     sequence: Annotated[
@@ -201,7 +205,7 @@ def evaluate(
         typer.Option(metavar="KEY=VALUE", help="Another tolerance of --scene, as offset_m=0.1; repeatable."),
     ] = None,
 ) -> None:
-    """Compare a trajectory (ATE, RPE, completion) or a scene graph (--scene, --truth) with the truth."""
+    """Compare a run or a trajectory with the truth: ATE, RPE, completion; rooms, doors, walls where known."""
     with told():
         if scene is not None or truth is not None:
             from vsgraphs.cli.compare_scene import compare_scene, scene_request
@@ -210,16 +214,16 @@ def evaluate(
                 scene_request(scene, truth, groundtruth, max_dt, json_file, list(tolerance or []), plot)
             )
             return
-        from vsgraphs.cli.compare import CompareRequest, compare, required_truth
+        from vsgraphs.cli.compare import CompareRequest, required_truth
+        from vsgraphs.cli.compare_run import compare_run
 
-        compare(CompareRequest(trajectory, required_truth(groundtruth), sequence, max_dt, json_file, plot))
+        true_path = required_truth(groundtruth, trajectory)
+        compare_run(CompareRequest(trajectory, true_path, sequence, max_dt, json_file, plot))
 
 
-@app.command(epilog="Example: vsgraphs view results")
+@app.command(epilog=examples.VIEW)
 def view(
-    run: Annotated[
-        Path, typer.Argument(metavar="RUN_DIR", help="Directory that `vsgraphs run --out` wrote.")
-    ],
+    run: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="Directory that `vsgraphs run` left.")],
     web: Annotated[
         bool, typer.Option("--web", help="A page for a browser also where a window could open.")
     ] = False,
@@ -235,10 +239,7 @@ def view(
         view_run(run, Showing(record is None, record, view_port, web))
 
 
-@app.command(
-    epilog="Example: vsgraphs simulate two_rooms --out sequence --every 3, then "
-    "vsgraphs run sequence --out results",
-)
+@app.command(epilog=examples.SIMULATE)
 def simulate(
     plan: Annotated[
         str,
@@ -280,22 +281,27 @@ def simulate(
     raise typer.Exit(code)
 
 
-@app.command()
+@app.command(epilog=examples.INFO)
 def info(
-    file: Annotated[Path, typer.Argument(help="An atlas that `run --save-atlas` left.")],
+    what: Annotated[
+        Path,
+        typer.Argument(metavar="RUN_DIR|ATLAS", help="A run's directory, or an atlas of `run --save-atlas`."),
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Print what a saved atlas holds and what it was made with."""
+    """Print what a run or a saved atlas holds and what it was made with."""
     with told():
+        if what.is_dir():
+            from vsgraphs.cli.show_run import show_run
+
+            show_run(what, as_json=as_json)
+            return
         from vsgraphs.cli.show_atlas import show_atlas
 
-        show_atlas(file, as_json=as_json)
+        show_atlas(what, as_json=as_json)
 
 
-@app.command(
-    epilog="Examples: vsgraphs config tracker; vsgraphs config explain orb.max_features; "
-    "vsgraphs config --yaml > mine.yaml",
-)
+@app.command(epilog=examples.CONFIG)
 def config(
     search: Annotated[
         str | None,

@@ -31,8 +31,10 @@ class CompareRequest:
     plot: Path | None = None
 
 
-def compare(request: CompareRequest) -> Evaluation:
-    """Evaluates, prints the table, writes what was asked for. Raises InputError."""
+def compare(request: CompareRequest, more: dict[str, Any] | None = None) -> Evaluation:
+    """Evaluates, prints the table, writes what was asked for (and `more` in the JSON file). Raises
+    InputError.
+    """
     if request.plot is not None and request.plot.suffix.lower() not in _PLOTS:
         raise InputError(f"--plot {request.plot}: expected a name ending in {' or '.join(_PLOTS)}")
     path = request.trajectory / "trajectory.txt" if request.trajectory.is_dir() else request.trajectory
@@ -46,7 +48,8 @@ def compare(request: CompareRequest) -> Evaluation:
             result.notes.append("completion unknown: give --sequence FOLDER to count the input frames")
     _print(result)
     if request.json_file is not None:
-        write_atomically(request.json_file, json.dumps(result.to_json(), indent=1) + "\n")
+        content = {**result.to_json(), **(more or {})}
+        write_atomically(request.json_file, json.dumps(content, indent=1) + "\n")
     if request.plot is not None:
         from vsgraphs.evaluate.plot import draw
 
@@ -55,11 +58,19 @@ def compare(request: CompareRequest) -> Evaluation:
     return result
 
 
-def required_truth(groundtruth: Path | None) -> Path:
-    """What --groundtruth says. Raises InputError where it is missing."""
-    if groundtruth is None:
+def required_truth(groundtruth: Path | None, trajectory: Path) -> Path:
+    """What --groundtruth says, else the sequence that a run's directory was made from. Raises InputError
+    where it is missing.
+    """
+    if groundtruth is not None:
+        return groundtruth
+    source = _run_report(trajectory / "run.json").get("source") if trajectory.is_dir() else None
+    folder = source.get("path") if isinstance(source, dict) else None
+    if not isinstance(folder, str):
         raise InputError("missing --groundtruth: give the true trajectory or the sequence's folder")
-    return groundtruth
+    if not Path(folder).is_dir():
+        raise InputError(f"missing --groundtruth: {folder}, which the run was made from, is gone")
+    return Path(folder)
 
 
 def read_groundtruth(path: Path) -> Trajectory:

@@ -25,7 +25,7 @@ from vsgraphs.evaluate.scene import (
 from vsgraphs.export.atomic import write_atomically
 from vsgraphs.export.ply import read_ply
 from vsgraphs.scene_graph import load_scene_graph
-from vsgraphs.trajectory import read_tum_trajectory
+from vsgraphs.trajectory import Array, read_tum_trajectory
 
 
 @dataclass
@@ -61,8 +61,32 @@ def scene_request(
     return SceneRequest(scene, truth, groundtruth or beside, max_dt_s, json_file, options_from(tolerances))
 
 
+@dataclass
+class SceneComparison:
+    """scores; accuracy: of the trajectory. truth_from_graph: (4, 4), by the trajectory alone."""
+
+    scores: SceneScores
+    accuracy: Evaluation
+    truth_from_graph: Array
+
+
 def compare_scene(request: SceneRequest) -> SceneScores:
     """Evaluates, prints the table, writes the JSON file. Raises InputError."""
+    found = score_scene(request)
+    _print(found.scores, found.accuracy)
+    if request.json_file is not None:
+        content = {
+            "ate_rmse_m": found.accuracy.ate.rmse,
+            **found.scores.to_json(),
+            "tolerances": vars(request.options),
+            "alignment_truth_from_graph": np.round(found.truth_from_graph, 9).tolist(),
+        }
+        write_atomically(request.json_file, json.dumps(content, indent=1) + "\n")
+    return found.scores
+
+
+def score_scene(request: SceneRequest) -> SceneComparison:
+    """Evaluates. Raises InputError."""
     graph = load_scene_graph(request.run / "scene_graph.json")
     truth = load_scene_truth(request.truth)
     estimate = read_tum_trajectory(request.run / "trajectory.txt")
@@ -77,10 +101,11 @@ def compare_scene(request: SceneRequest) -> SceneScores:
     if map_file.exists():
         points = read_ply(map_file)[0]
         points = (points - to_trajectory[:3, 3]) @ to_trajectory[:3, :3]
+    truth_from_graph = truth_from_trajectory @ to_trajectory
     scores = evaluate_scene(
         graph,
         truth,
-        truth_from_trajectory @ to_trajectory,
+        truth_from_graph,
         ate_m=accuracy.ate.rmse,
         map_points=points,
         options=request.options,
@@ -88,16 +113,7 @@ def compare_scene(request: SceneRequest) -> SceneScores:
     scores.notes += accuracy.notes
     if points is None:
         scores.notes.append(f"no {map_file}: map points are not scored")
-    _print(scores, accuracy)
-    if request.json_file is not None:
-        content = {
-            "ate_rmse_m": accuracy.ate.rmse,
-            **scores.to_json(),
-            "tolerances": vars(request.options),
-            "alignment_truth_from_graph": np.round(truth_from_trajectory @ to_trajectory, 9).tolist(),
-        }
-        write_atomically(request.json_file, json.dumps(content, indent=1) + "\n")
-    return scores
+    return SceneComparison(scores, accuracy, truth_from_graph)
 
 
 def _print(scores: SceneScores, accuracy: Evaluation) -> None:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 from collections import Counter
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
+from vsgraphs.cli.output import remove_earlier
+from vsgraphs.cli.summary import what_is_missing
 from vsgraphs.compiled import core
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
@@ -93,6 +96,7 @@ def write_results(outcome: RunOutcome) -> dict[str, Any]:
         "timeline.json": lambda: format_timeline(_spans(outcome)),
         "run.json": figures,
     }
+    remove_earlier(outcome.out, contents)
     failures = []
     for name, content in contents.items():
         try:
@@ -150,9 +154,12 @@ def _scene_counts(graph: SceneGraph | None) -> dict[str, Any]:
     return {
         "frame": "levelled" if graph.frame.levelled else "first_camera",
         "planes": len(graph.planes),
+        "undecided": roles["undecided"],
         "walls": roles["wall"],
         "grounds": roles["ground"],
         "rooms": len(graph.rooms),
+        "partial_rooms": sum(room.partial for room in graph.rooms.values()),
+        "area_m2": sum(room.area_m2 for room in graph.rooms.values()),
         "floors": len(graph.floors),
         "doors": len(graph.doors),
     }
@@ -165,7 +172,7 @@ def run_report(
     statistics = outcome.slam.statistics()
     processed = outcome.tally.seen
     shown = outcome.view.report() if outcome.view else None
-    return {
+    report: dict[str, Any] = {
         "frames": outcome.frames,
         "tracked": tracked,
         "completion": tracked / outcome.frames if outcome.frames else 0.0,
@@ -182,6 +189,7 @@ def run_report(
         "fps": processed / outcome.wall_s if outcome.wall_s > 0 else 0.0,
         "peak_memory_mb": measures.peak_memory_mb(),
         "startup_s": outcome.startup_s,
+        "ended": datetime.now(UTC).isoformat(timespec="seconds"),
         "interrupted": outcome.tally.interrupted,
         "stages": statistics["stages"],
         "segmentation": {
@@ -192,6 +200,7 @@ def run_report(
         **_marker_figures(outcome, graph),
         "source": {
             "name": outcome.sequence.name,
+            "path": str(outcome.sequence.path.resolve()),
             "format": outcome.sequence.format,
             "camera": outcome.sequence.calibration.origin,
         },
@@ -209,18 +218,8 @@ def run_report(
             *statistics["warnings"],
         ],
     }
-
-
-def summarise(report: dict[str, Any], out: Path) -> str:
-    """Two lines for people."""
-    startup = report["startup_s"]
-    return (
-        f"tracked {report['tracked']} of {report['frames']} frames ({100 * report['completion']:.1f} %), "
-        f"{report['keyframes']} keyframes, {report['landmarks']} landmarks; {report['fps']:.1f} frames/s, "
-        f"CPU {report['cpu_s']:.1f} s, {report['peak_memory_mb']:.0f} MB"
-        + (f", first pose after {startup:.2f} s" if startup is not None else "")
-        + f"\nresults in {out}: trajectory.txt keyframes.txt map.ply run.json timeline.json"
-    )
+    report["warnings"] += what_is_missing(report)
+    return report
 
 
 def _spans(outcome: RunOutcome) -> list[Span]:

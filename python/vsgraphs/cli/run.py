@@ -15,9 +15,10 @@ from vsgraphs.cli.atlas_files import AtlasFiles
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
 from vsgraphs.cli.progress import Progress
-from vsgraphs.cli.results import MarkerOutcome, RunOutcome, summarise, write_results
+from vsgraphs.cli.results import MarkerOutcome, RunOutcome, write_results
 from vsgraphs.cli.session import Session, Tally
 from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
+from vsgraphs.cli.summary import summarise
 from vsgraphs.cli.viewing import RunView, Showing
 from vsgraphs.datasets import RecordedSequence, open_sequence
 from vsgraphs.datasets.prefetch import Prefetcher

@@ -103,7 +103,7 @@ def _plane(row: Row, mover: _Mover, keyframes: set[int]) -> PlaneNode:
         centroid=middle - normal * float(normal @ middle + offset_m),
         extent=extent,
         other_face=_id(row.get("other_face")),
-        thickness_m=_number(row.get("thickness_m")),
+        thickness_m=_number(row.get("thickness_m")) if row.get("other_face") is not None else None,
         observed_by=_ids(set(map(int, row.get("observed_by", ()))) & keyframes),  # others were culled
     )
 

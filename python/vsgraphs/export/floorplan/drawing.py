@@ -134,7 +134,8 @@ class _Panel:
         if len(room.polygon) < 3:
             return
         fill = CORRIDOR if room.kind == "corridor" else ROOMS[room.id % len(ROOMS)]
-        dashed = {"stroke": SOFT_INK, "stroke_width": 1, "stroke_dasharray": "5 4"} if room.partial else {}
+        # Walls and doors are drawn over it: what stays visible is where no wall was seen.
+        dashed = {"stroke": SOFT_INK, "stroke_width": 1, "stroke_dasharray": "5 4"}
         self.page.polygon(self.px(self.view.flat(room.polygon)), fill=fill, **dashed)
 
     def room_label(self, room: RoomNode, busy: Array) -> None:
@@ -143,11 +144,13 @@ class _Panel:
         name = room.name or f"{room.kind} {room.id}"
         place, free_m = label_place(self.view.flat(room.polygon), busy)
         x, y = self.px(place[None])[0]
-        size = float(np.clip(2.6 * free_m * self.scale / max(len(name), 6), 9.0, 17.0))
+        size = float(np.clip(2.6 * free_m * self.scale / max(len(name), 6), 12.0, 17.0))
         area = f"{room.area_m2:.1f} m²" + (", partly seen" if room.partial else "")
         style: dict[str, Any] = {"text_anchor": "middle", "halo": True}
         self.page.text(x, y - 0.1 * size, name, font_size=number(size), font_weight="bold", fill=INK, **style)
-        self.page.text(x, y + 0.95 * size, area, font_size=number(0.75 * size), fill=SOFT_INK, **style)
+        self.page.text(
+            x, y + 0.95 * size, area, font_size=number(max(0.75 * size, 10.0)), fill=SOFT_INK, **style
+        )
 
     def strips(self, strips: list[Strip]) -> None:
         """Bodies first, then faces: a body must not cover its neighbour's face."""

@@ -36,10 +36,11 @@ def draw_title(page: Page, graph: SceneGraph, title: str, left: float) -> None:
     if "rooms" in graph.estimated:
         area = sum(room.area_m2 for room in graph.rooms.values())
         facts.append(f"{_count(len(graph.rooms), 'room')}, {area:.1f} m²")
-    facts.append(_count(len(graph.planes_of("wall")), "wall face"))
+    facts.append(_count(len(graph.planes_of("wall")), "wall"))
     if "doors" in graph.estimated:
         facts.append(_count(len(graph.doors), "door"))
-    facts.append(f"z = 0: {graph.frame.zero_height}")
+    if graph.frame.ground is None:  # heights are from something else than readers take for granted
+        facts.append(f"z = 0: {graph.frame.zero_height}")
     page.text(left, 61, "  ·  ".join(facts), font_size=12, fill=SOFT_INK)
 
 
