@@ -102,16 +102,22 @@ nb::tuple landmarks_of(const Map& map) {
 
 nb::tuple trajectory_of(const Slam& slam) {
   std::vector<double> stamps, poses;
-  for (const TimedPose& pose : slam.trajectory()) {
-    stamps.push_back(pose.timestamp_s);
-    append_rows(poses, pose.world_from_camera);
+  {
+    const nb::gil_scoped_release release;  // milliseconds after an hour: whoever tracks goes on meanwhile
+    for (const TimedPose& pose : slam.trajectory()) {
+      stamps.push_back(pose.timestamp_s);
+      append_rows(poses, pose.world_from_camera);
+    }
   }
   const std::size_t n = stamps.size();
   return nb::make_tuple(to_numpy(std::move(stamps), {n}), to_numpy(std::move(poses), {n, 4, 4}));
 }
 
 nb::dict statistics_of(const Slam& slam) {
-  const RunStatistics s = slam.statistics();
+  const RunStatistics s = [&slam] {
+    const nb::gil_scoped_release release;
+    return slam.statistics();
+  }();
   nb::dict stages;
   for (const auto& [name, stage] : s.stages) {
     nb::dict d;

@@ -42,6 +42,21 @@ std::string at_time(double timestamp_s) {
   return text;
 }
 
+std::vector<TimedPose> poses_in(const Map& map, const FrameRecords::View& records) {
+  // A frame that became a keyframe is where its keyframe is.
+  std::map<std::int64_t, Se3> keyframe_pose;
+  map.keyframes().for_each(
+      [&](KeyframeId, const Keyframe& k) { keyframe_pose[k.frame_index] = k.world_from_camera; });
+  std::vector<TimedPose> result;
+  result.reserve(records.size());
+  records.for_each([&](const FrameRecord& record) {
+    const auto own = keyframe_pose.find(record.index);
+    const auto pose = own != keyframe_pose.end() ? std::optional<Se3>(own->second) : map.resolve(record.pose);
+    if (pose) result.push_back({record.timestamp_s, *pose});
+  });
+  return result;
+}
+
 }  // namespace
 
 Slam::Slam(const Config& config, const Camera& camera) : Slam(config, camera, AtlasState{}) {}
@@ -82,23 +97,26 @@ TrackedFrame Slam::track(RgbdFrame frame) {
 
 // A frame that starts a map names no keyframe; its own is there when the next frame has been tracked.
 void Slam::keep_record(const TrackedFrame& frame) {
-  if (!records_.empty() && !records_.back().pose.keyframe.valid())
-    records_.back().pose.keyframe = snapshot()->keyframe_of_frame(records_.back().index);
-  if (has_pose(frame.status)) records_.push_back({frame.index, frame.timestamp_s, frame.pose});
+  if (const FrameRecord* unnamed = records_.unnamed())
+    records_.name_newest(snapshot()->keyframe_of_frame(unnamed->index));
+  if (has_pose(frame.status)) records_.append({frame.index, frame.timestamp_s, frame.pose});
+}
+
+void Slam::warn(std::string line) {
+  const std::lock_guard lock(warnings_mutex_);
+  warnings_.push_back(std::move(line));
 }
 
 void Slam::note_status(const TrackedFrame& frame) {
   if (frame.status == TrackStatus::lost && !lost_) {
-    warnings_.push_back("tracking was lost at " + at_time(frame.timestamp_s));
+    warn("tracking was lost at " + at_time(frame.timestamp_s));
     lost_ = true;
   } else if (frame.status == TrackStatus::relocalised) {
-    warnings_.push_back(starts_lost_
-                            ? "found in the loaded map at " + at_time(frame.timestamp_s)
-                            : "tracking was recovered (relocalised) at " + at_time(frame.timestamp_s));
+    warn(starts_lost_ ? "found in the loaded map at " + at_time(frame.timestamp_s)
+                      : "tracking was recovered (relocalised) at " + at_time(frame.timestamp_s));
     lost_ = starts_lost_ = false;
   } else if (frame.status == TrackStatus::initialised && lost_) {
-    warnings_.push_back("nothing known was recognised; a new map was started at " +
-                        at_time(frame.timestamp_s));
+    warn("nothing known was recognised; a new map was started at " + at_time(frame.timestamp_s));
     lost_ = starts_lost_ = false;
   }
 }
@@ -124,14 +142,10 @@ AtlasState Slam::atlas_state() const {
   return state;
 }
 
-std::int64_t Slam::backlog() const {
-  const std::lock_guard lock(frames_mutex_);
-  return executor_->backlog();
-}
+std::int64_t Slam::backlog() const { return executor_->backlog(); }
 
 std::vector<const SpanRecorder*> Slam::spans() const {
-  const std::lock_guard lock(frames_mutex_);
-  return finished_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
+  return ended_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
 }
 
 void Slam::finish() {
@@ -151,17 +165,17 @@ void Slam::finish() {
 }
 
 std::vector<TimedPose> Slam::trajectory() const {
-  const std::lock_guard lock(frames_mutex_);
-  return poses_in(*map_given_out());
+  const FrameRecords::View records = records_.view();
+  return poses_in(*map_given_out(records), records);
 }
 
-Snapshot Slam::map_given_out() const {
+Snapshot Slam::map_given_out(const FrameRecords::View& records) const {
   const SnapshotCell::Content content = executor_->content();
   Snapshot best = content.snapshot;
   if (!config_.system.localise_only) return best;
-  std::size_t most = poses_in(*best).size();
+  std::size_t most = poses_in(*best, records).size();
   for (const MapState& other : *content.dormant) {
-    const std::size_t count = poses_in(*other.map).size();
+    const std::size_t count = poses_in(*other.map, records).size();
     if (count <= most) continue;
     most = count;
     best = other.map;
@@ -169,44 +183,36 @@ Snapshot Slam::map_given_out() const {
   return best;
 }
 
-std::vector<TimedPose> Slam::poses_in(const Map& map) const {
-  // A frame that became a keyframe is where its keyframe is.
-  std::map<std::int64_t, Se3> keyframe_pose;
-  map.keyframes().for_each(
-      [&](KeyframeId, const Keyframe& k) { keyframe_pose[k.frame_index] = k.world_from_camera; });
-  std::vector<TimedPose> result;
-  result.reserve(records_.size());
-  for (const FrameRecord& record : records_) {
-    const auto own = keyframe_pose.find(record.index);
-    const auto pose = own != keyframe_pose.end() ? std::optional<Se3>(own->second) : map.resolve(record.pose);
-    if (pose) result.push_back({record.timestamp_s, *pose});
-  }
-  return result;
-}
-
 RunStatistics Slam::statistics() const {
-  const std::lock_guard lock(frames_mutex_);
   const SnapshotCell::Content content = executor_->content();
   RunStatistics s;
   s.frames = frames_;
-  s.tracked = static_cast<std::int64_t>(records_.size());
+  s.tracked = records_.size();
   s.waited_s = executor_->waited_s();
   s.maps = static_cast<int>(content.dormant->size()) + (content.snapshot->keyframes().size() > 0 ? 1 : 0);
   s.loops = content.counts.loops;
   s.merges = content.counts.merges;
-  s.elsewhere = s.tracked - static_cast<std::int64_t>(poses_in(*map_given_out()).size());
-  s.warnings = warnings_;
-  if (!finished_) return s;
+  {
+    const std::lock_guard lock(warnings_mutex_);
+    s.warnings = warnings_;
+  }
+  if (ended_) add_what_the_end_tells(s);
+  return s;
+}
+
+void Slam::add_what_the_end_tells(RunStatistics& s) const {
+  const FrameRecords::View records = records_.view();
+  s.elsewhere = s.tracked - static_cast<std::int64_t>(poses_in(*map_given_out(records), records).size());
   s.stages = stage_statistics(executor_->spans());
-  if (content.counts.dropped_maps > 0)
-    s.warnings.push_back(std::to_string(content.counts.dropped_maps) + " map(s) of fewer than " +
+  const int dropped = executor_->content().counts.dropped_maps;
+  if (dropped > 0)
+    s.warnings.push_back(std::to_string(dropped) + " map(s) of fewer than " +
                          std::to_string(config_.system.min_map_keyframes) +
                          " keyframes were dropped when a new one began");
   if (s.elsewhere > 0)
     s.warnings.push_back(std::to_string(s.elsewhere) +
                          " tracked frames are in maps that were never joined with the one given out; the "
                          "trajectory leaves them out");
-  return s;
 }
 
 }  // namespace vsgraphs

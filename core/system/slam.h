@@ -13,6 +13,7 @@
 #include "core/stages/messages.h"
 #include "core/system/config.h"
 #include "core/system/executor.h"
+#include "core/system/frame_records.h"
 #include "core/system/markers.h"
 #include "core/system/segmentation.h"
 
@@ -30,8 +31,8 @@ struct RunStatistics {
   int maps = 0;              // that are not joined, the one given out included
   int loops = 0;             // closed
   int merges = 0;            // maps joined with another
-  std::int64_t elsewhere =
-      0;  // tracked frames that are in other maps than the one given out, or in none any more
+  // Tracked frames that are in other maps than the one given out, or in none any more; counted at the end.
+  std::int64_t elsewhere = 0;
   std::map<std::string, StageStatistics> stages;
   std::vector<std::string> warnings;
 };
@@ -66,7 +67,7 @@ class Slam {
   // All maps as last published, the one being worked on last; any thread, any time, tracking is not held up. The free space
   // of that one is there after finish() alone. Cost: a few pointers, after finish() a copy of the free space.
   AtlasState atlas_state() const;
-  // Keyframes waiting for the mapper.
+  // Keyframes waiting for the mapper. Any thread, any time, at a cost that does not grow; tracking is not held up.
   std::int64_t backlog() const;
 
   // Ends the work that is under way; further calls of track() are an error. May be called twice. Throws what went
@@ -75,33 +76,30 @@ class Slam {
 
   // Poses of all frames that have one, in order, corrected by everything learned since, in the map of snapshot(): frames in
   // maps that were never joined with it are left out (see RunStatistics). With system.localise_only: in the map that holds
-  // most of them.
+  // most of them. Any thread, any time; tracking is not held up. Cost: linear in frames and keyframes, on the caller's thread.
   std::vector<TimedPose> trajectory() const;
-  // Any time; the stages are there after finish() alone, as the workers write them until then.
+  // Any thread, any time, at a cost that does not grow while frames come; tracking is not held up. `stages`, `elsewhere` and
+  // what is warned of at the end are there after finish() alone, as the workers write them until then.
   RunStatistics statistics() const;
-  // Empty before finish().
+  // Empty before finish() has returned.
   std::vector<const SpanRecorder*> spans() const;
 
  private:
-  struct FrameRecord {
-    std::int64_t index;
-    double timestamp_s;
-    AnchoredPose pose;
-  };
   void note_status(const TrackedFrame& frame);
   void keep_record(const TrackedFrame& frame);
-  Snapshot map_given_out() const;
-  std::vector<TimedPose> poses_in(const Map& map) const;
+  void warn(std::string line);
+  Snapshot map_given_out(const FrameRecords::View& records) const;
+  void add_what_the_end_tells(RunStatistics& s) const;
 
-  // Held while a frame is tracked and while its records are read: a second caller of track() is told so, readers
-  // wait for the frame to end.
-  mutable std::mutex frames_mutex_;
+  // Held while a frame is tracked and while the run ends: a second caller of track() is told so. Readers never take it.
+  std::mutex frames_mutex_;
   Config config_;
   Camera camera_;
   std::unique_ptr<Executor> executor_;
-  std::vector<FrameRecord> records_;
+  FrameRecords records_;
+  mutable std::mutex warnings_mutex_;  // held for as long as it takes to copy the lines
   std::vector<std::string> warnings_;
-  std::int64_t frames_ = 0;
+  std::atomic<std::int64_t> frames_ = 0;
   std::int64_t first_index_ = 0;
   double last_timestamp_s_;
   bool lost_ = false, starts_lost_ = false;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include "core/base/check.h"
 #include "core/base/rng.h"
@@ -109,6 +110,31 @@ TEST(Slam, ThreadedRunFollowsTheCameraWhileOthersReadTheMap) {
   reader.join();
   EXPECT_TRUE(consistent);
   EXPECT_LT(largest_error_m(run.slam().trajectory()), 0.01);
+}
+
+// Four readers ask for all there is to ask for, without a pause: no frame may be refused or lost for it.
+TEST(Slam, ReadersNeverKeepAFrameFromBeingTracked) {
+  ShortRun run(configured("threaded"));
+  std::atomic<bool> stop = false;
+  std::atomic<std::int64_t> reads = 0;
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 4; ++i)
+    readers.emplace_back([&] {
+      while (!stop) {
+        const std::size_t poses = run.slam().trajectory().size();
+        const RunStatistics statistics = run.slam().statistics();
+        if (poses <= static_cast<std::size_t>(statistics.tracked) && run.slam().backlog() >= 0 &&
+            run.slam().spans().empty())
+          ++reads;
+      }
+    });
+  for (int i = 0; i < frame_count; ++i) EXPECT_TRUE(has_pose(run.track(i).status)) << "frame " << i;
+  stop = true;
+  for (std::thread& reader : readers) reader.join();
+  run.slam().finish();
+  EXPECT_GT(reads, 10);
+  EXPECT_EQ(run.slam().trajectory().size(), static_cast<std::size_t>(frame_count));
+  EXPECT_EQ(run.slam().statistics().frames, frame_count);
 }
 
 TEST(Slam, SerialRunsAreTheSameBytes) {

@@ -1,3 +1,4 @@
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <exception>
@@ -121,7 +122,7 @@ class ThreadedExecutor : public Executor {
     if (cell_.take().completed >= needed) return;
     const auto begin = std::chrono::steady_clock::now();
     cell_.wait_for_completed(needed);
-    waited_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    waited_s_ = waited_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
   void stop_worker() {
@@ -143,8 +144,8 @@ class ThreadedExecutor : public Executor {
   BoundedQueue<Work> requests_;
   BackgroundAdjustment background_;
   std::exception_ptr failure_;
-  std::deque<double> unfinished_;  // timestamps of requests that need not be completed yet
-  double waited_s_ = 0;
+  std::deque<double> unfinished_;     // timestamps of requests that need not be completed yet
+  std::atomic<double> waited_s_ = 0;  // read by others
   std::thread worker_;
 };
 

@@ -1,6 +1,7 @@
 // The tracker with its clock and its log of which map version each frame saw; shared by all executors.
 #pragma once
 
+#include <atomic>
 #include <limits>
 
 #include "core/stages/tracker.h"
@@ -48,7 +49,7 @@ class TrackingLane {
   Tracker tracker_;
   SpanRecorder spans_;
   std::vector<FrameEvent> frames_;
-  std::int64_t requested_ = 0;
+  std::atomic<std::int64_t> requested_ = 0;  // read by others
 };
 
 // Tracking's lane and the map owner's.
