@@ -113,6 +113,36 @@ nb::tuple trajectory_of(const Slam& slam) {
   return nb::make_tuple(to_numpy(std::move(stamps), {n}), to_numpy(std::move(poses), {n, 4, 4}));
 }
 
+nb::dict refused_of(const RefusedLoop& refused) {
+  nb::dict d;
+  d["verdict"] = to_string(refused.verdict);
+  d["frame"] = refused.frame;
+  d["place_frame"] = refused.place_frame;
+  d["timestamp_s"] = refused.timestamp_s;
+  d["place_timestamp_s"] = refused.place_timestamp_s;
+  d["score"] = refused.score;
+  d["inliers"] = refused.inliers;
+  d["supporters"] = refused.supporters;
+  d["off_m"] = refused.off_m;
+  d["off_rad"] = refused.off_rad;
+  d["drift_sigmas"] = refused.drift_sigmas;
+  d["disagreeing_share"] = refused.disagreeing_share;
+  d["seen_through_share"] = refused.seen_through_share;
+  return d;
+}
+
+nb::dict tally_of(const LoopTally& tally) {
+  nb::dict verdicts, result;
+  for (std::size_t i = 0; i < tally.verdicts.size(); ++i) {
+    if (tally.verdicts[i] > 0) verdicts[to_string(static_cast<LoopVerdict>(i))] = tally.verdicts[i];
+  }
+  nb::list nearest;
+  for (const RefusedLoop& refused : tally.nearest) nearest.append(refused_of(refused));
+  result["verdicts"] = verdicts;
+  result["nearest_refused"] = nearest;
+  return result;
+}
+
 nb::dict statistics_of(const Slam& slam) {
   const RunStatistics s = [&slam] {
     const nb::gil_scoped_release release;
@@ -137,6 +167,8 @@ nb::dict statistics_of(const Slam& slam) {
   result["loops"] = s.loops;
   result["merges"] = s.merges;
   result["elsewhere"] = s.elsewhere;
+  result["loop_candidates"] = tally_of(s.tallies.loops);
+  result["join_candidates"] = tally_of(s.tallies.joins);
   result["stages"] = stages;
   result["warnings"] = s.warnings;
   return result;
@@ -303,7 +335,11 @@ void bind_slam(nb::module_& m) {
            "frames, tracked, waited_s, maps (not joined), loops, merges, elsewhere (tracked frames in other "
            "maps "
            "than the one\n"
-           "given out), warnings and stages; complete after finish().")
+           "given out), loop_candidates and join_candidates (verdicts: how many candidates got each; "
+           "nearest_refused: both\n"
+           "frames, inliers, and what spoke against it), warnings and stages; elsewhere and stages after "
+           "finish() alone.\n"
+           "Any thread; tracking is not held up.")
       .def("trace", &trace_of, nb::sig("def trace(self) -> list[tuple[str, str, int, int, int]]"),
            "List of (lane, stage, begin_us, duration_us, frame); complete after finish(). Time is the "
            "monotonic "

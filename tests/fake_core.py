@@ -81,6 +81,8 @@ class Slam:
             "maps": 1,
             "loops": 2,
             "merges": 0,
+            "loop_candidates": {"verdicts": {}, "nearest_refused": []},
+            "join_candidates": {"verdicts": {}, "nearest_refused": []},
             "warnings": ["from the core"],
             "stages": {"track": {"count": self.seen, **figures}},
         }

@@ -113,6 +113,8 @@ def test_a_run_starts_from_the_maps_of_another(scene: Scene, camera: vsgraphs.Ca
     second.finish()
     statistics = second.statistics()
     assert (statistics["maps"], statistics["loops"], statistics["merges"]) == (1, 0, 0)
+    for kind in ("loop_candidates", "join_candidates"):
+        assert set(statistics[kind]) == {"verdicts", "nearest_refused"}
 
     config.set("system.localise_only", True)
     with pytest.raises(vsgraphs.InputError, match="load an atlas"):

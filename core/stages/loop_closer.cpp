@@ -88,13 +88,21 @@ std::optional<MapEdit> LoopCloser::close(KeyframeId keyframe, const Snapshot& sn
       if (drift_passes(map, graph, there, *loop, attempt)) {
         last_closed_ = keyframe;
         MapEdit edit = correct(snapshot, graph, here, there, *loop, attempt);
-        report = attempt;
+        note(attempt, report);
         return edit;
       }
     }
-    if (attempt.verdict > report.verdict) report = attempt;
+    note(attempt, report);
   }
   return std::nullopt;
+}
+
+// Keeps the candidate that came furthest, and counts all.
+void LoopCloser::note(const LoopReport& attempt, LoopReport& report) {
+  auto attempts = report.attempts;
+  ++attempts[static_cast<std::size_t>(attempt.verdict)];
+  if (attempt.verdict > report.verdict) report = attempt;
+  report.attempts = attempts;
 }
 
 std::vector<LoopCloser::Candidate> LoopCloser::candidates(const Map& map, const FeatureSet& features,
@@ -237,11 +245,11 @@ std::optional<MapJoin> LoopCloser::join(KeyframeId keyframe, const Snapshot& sna
     const auto loop = verify(both, here, there, snapshot->up_in_world(), other.map->up_in_world(), attempt);
     if (loop && neighbours_pass(both, snapshot, other.map, *loop, attempt)) {
       attempt.verdict = LoopVerdict::closed;
-      report = attempt;
+      note(attempt, report);
       last_closed_ = keyframe;
       return join_maps(snapshot, other.map, here, there, *loop);
     }
-    if (attempt.verdict > report.verdict) report = attempt;
+    note(attempt, report);
   }
   return std::nullopt;
 }

@@ -2,6 +2,7 @@
 // both sights together. One verb, synchronous; holds no clock and no thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -57,6 +58,7 @@ enum class LoopVerdict : std::uint8_t {
   joined,               // closed; only landmarks and planes were merged, as nothing was off
   closed,               // closed and corrected
 };
+inline constexpr std::size_t loop_verdict_count = 10;
 const char* to_string(LoopVerdict verdict);
 
 struct LoopReport {
@@ -71,6 +73,7 @@ struct LoopReport {
   double drift_sigmas = 0;
   double off_m = 0, off_rad = 0;  // what was corrected, at the keyframe
   SolveReport pose_graph;
+  std::array<int, loop_verdict_count> attempts{};  // candidates of this call, by their verdicts
 };
 
 // Two maps become one. `edit` is of the older one, whose world stays: it opens that map, where it is not the one being worked
@@ -106,6 +109,7 @@ class LoopCloser {
   std::vector<Candidate> candidates(const Map& map, const FeatureSet& features, const PlaceIndex& places,
                                     std::span<const std::uint8_t> excluded) const;
   // `up_here`: up as the map of `here` has it, while both maps stand unaligned in one table.
+  static void note(const LoopReport& attempt, LoopReport& report);
   std::optional<LoopAlignment> verify(const Map& map, const MappedPlace& here, const MappedPlace& there,
                                       const std::optional<Eigen::Vector3d>& up_here,
                                       const std::optional<Eigen::Vector3d>& up_there,

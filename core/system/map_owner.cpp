@@ -98,6 +98,12 @@ void MapOwner::look_for_loop() {
   LoopReport report;
   if (auto edit = loop_closer_.close(newest_, snapshot_, places_, report, &spans_))
     loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
+  tally(tallies_.loops, report, *snapshot_);
+}
+
+void MapOwner::tally(LoopTally& kind, const LoopReport& report, const Map& there) {
+  kind.add(report, *snapshot_, there);
+  published_tallies_ = std::make_shared<const LoopTallies>(tallies_);
 }
 
 void MapOwner::close_loop() {
@@ -177,7 +183,7 @@ void MapOwner::publish() {
   if (follow(*snapshot_, places_) || !published_places_)
     published_places_ = std::make_shared<const PlaceIndex>(places_);
   cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_), published_places_,
-                 published_dormant_, counts_});
+                 published_dormant_, counts_, published_tallies_});
 }
 
 }  // namespace vsgraphs

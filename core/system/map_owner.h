@@ -100,6 +100,7 @@ class MapOwner {
   void wake(std::size_t dormant, EditEvent::Kind why, std::int64_t frame);
   void open_new_map(std::int64_t frame);
   void publish_dormant();
+  void tally(LoopTally& kind, const LoopReport& report, const Map& there);
   void adjust_from_here();
   void drop_adjustment();
 
@@ -123,6 +124,8 @@ class MapOwner {
   bool adjust_again_ = false;  // landmarks were merged while one was under way
   std::optional<std::int64_t> completed_before_adjustment_;
   AtlasCounts counts_;
+  LoopTallies tallies_;
+  std::shared_ptr<const LoopTallies> published_tallies_;
   MeasurementModel model_;
   SnapshotCell& cell_;
   SpanRecorder spans_, scene_spans_;

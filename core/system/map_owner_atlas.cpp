@@ -130,6 +130,7 @@ void MapOwner::look_for_join() {
     const MapState& other = dormant_[i].state;
     LoopReport report;
     auto join = loop_closer_.join(newest_, snapshot_, {other.map, other.places}, report, &spans_);
+    tally(tallies_.joins, report, *other.map);
     if (join) join_ = FoundJoin{i, std::move(*join)};
   }
 }

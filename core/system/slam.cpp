@@ -192,6 +192,7 @@ RunStatistics Slam::statistics() const {
   s.maps = static_cast<int>(content.dormant->size()) + (content.snapshot->keyframes().size() > 0 ? 1 : 0);
   s.loops = content.counts.loops;
   s.merges = content.counts.merges;
+  if (content.tallies) s.tallies = *content.tallies;
   {
     const std::lock_guard lock(warnings_mutex_);
     s.warnings = warnings_;

@@ -31,6 +31,7 @@ struct RunStatistics {
   int maps = 0;              // that are not joined, the one given out included
   int loops = 0;             // closed
   int merges = 0;            // maps joined with another
+  LoopTallies tallies;       // what became of the places that looked alike
   // Tracked frames that are in other maps than the one given out, or in none any more; counted at the end.
   std::int64_t elsewhere = 0;
   std::map<std::string, StageStatistics> stages;

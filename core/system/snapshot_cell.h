@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "core/stages/loop_tally.h"
 #include "core/system/atlas_state.h"
 
 namespace vsgraphs {
@@ -14,6 +15,11 @@ struct AtlasCounts {
   int loops = 0;         // closed
   int merges = 0;        // maps joined
   int dropped_maps = 0;  // too small to be kept when a new one began
+};
+
+// Of places in the map worked on, and in the dormant ones.
+struct LoopTallies {
+  LoopTally loops, joins;
 };
 
 class SnapshotCell {
@@ -27,6 +33,7 @@ class SnapshotCell {
     // The other maps, oldest first; never null once something was published.
     std::shared_ptr<const std::vector<MapState>> dormant;
     AtlasCounts counts;
+    std::shared_ptr<const LoopTallies> tallies;  // null until a place was compared
   };
   void publish(Content content);
   Content take() const;

@@ -182,6 +182,8 @@ def run_report(
         "maps": statistics["maps"],
         "loops": statistics["loops"],
         "merges": statistics["merges"],
+        "loop_candidates": statistics["loop_candidates"],
+        "join_candidates": statistics["join_candidates"],
         "scene": _scene_counts(graph),
         "wall_s": outcome.wall_s,
         "waited_s": float(statistics["waited_s"]),
