@@ -55,7 +55,7 @@ def _whole(number: float) -> str:
 
 
 def _both(numbers: list[float]) -> str:
-    return f"{statistics.median(numbers):g} / {max(numbers):g}"
+    return f"{round(statistics.median(numbers), 1):g} / {round(max(numbers), 1):g}"
 
 
 def _found(score: dict[str, int] | None) -> str:

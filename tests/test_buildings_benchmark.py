@@ -20,7 +20,7 @@ from pathlib import Path
 words = sys.argv[1:]
 value = lambda option: words[words.index(option) + 1] if option in words else None
 with open({log!r}, "a") as log:
-    print(words[0], *(word for word in words[1:] if word.startswith(("lo", "--s"))), file=log)
+    print(words[0], *(word for word in words[1:] if word.startswith(("system", "--s"))), file=log)
 if words[0] == "simulate" and value("--plan-only"):
     Path(value("--plan-only")).write_text(json.dumps({{"name": " ".join(words[1:9])}}))
 elif words[0] == "simulate":
@@ -34,7 +34,7 @@ elif words[0] == "run":
     draw = json.loads((Path(words[1]) / "scene_gt.json").read_text())["draw"]
     out = Path(value("--out"))
     out.mkdir(parents=True, exist_ok=True)
-    loops = 0 if "loop.enabled=false" in words else 3
+    loops = 0 if "system.loop_closing=false" in words else 3
     report = dict(completion=0.5 + draw / 10, cpu_s=10.0 + draw, frames=100, maps=1, loops=loops, merges=0)
     report |= dict(keyframes=9, landmarks=1, peak_memory_mb=50.0, skipped={{}}, stages={{"track": {{}}}})
     report["draw"] = draw
@@ -102,13 +102,14 @@ def test_variants_share_a_sequence_and_nothing_is_done_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     plan, out = plan_file(tmp_path), tmp_path / "out"
-    words = ["--plans", plan, "--variant", "plain", "--variant", "open", "loop.enabled=false", "--jobs", 2]
+    words = ["--plans", plan, "--jobs", 2, "--variant", "plain"]
+    words += ["--variant", "open", "system.loop_closing=false"]
     assert run_main(monkeypatch, program, out, *words) == 0
     done = asked(program)
     assert sum(line.startswith("simulate") for line in done) == 1
     assert sorted(line for line in done if line.startswith("run")) == [
         "run --seed",
-        "run --seed --set loop.enabled=false",
+        "run --seed --set system.loop_closing=false",
     ]
     shown = capsys.readouterr().out
     assert "| office | plain | 0 | 0 | 0.0100 | 50.0 | 1 | 3 |" in shown
