@@ -61,7 +61,7 @@ class Places:
         words = building_arguments(name)
         plan = self.folder / "plans" / f"{name}.json"
         plan.parent.mkdir(parents=True, exist_ok=True)
-        call([*self.program, "simulate", *words, "--plan-only", str(plan)])
+        call([*self.program, "simulate", *words, "--plan-only", str(plan), "--overwrite"])
         return Place.of(plan, name)
 
     def sequence(self, place: Place, draw: int) -> Path:
