@@ -3,7 +3,7 @@
 
     benchmarks/buildings.py OUT --plans office_12.json office_24.json --draws 0 1 --every 3
     benchmarks/buildings.py OUT --buildings line-24-4 ring-16-4 --set system.loop_closing=false
-    benchmarks/buildings.py OUT --buildings line-12-1 --variant plain --variant no_loops system.loop_closing=false
+    benchmarks/buildings.py OUT --buildings line-12-1 --variant plain --variant open system.loop_closing=false
 
 Plans are simulated into OUT/sequences once. Each run is a line of OUT/results.jsonl, its results lie in
 OUT/runs. What the file holds already of this build, plan, draw, seed and options is not run again, so that
