@@ -242,15 +242,42 @@ def view(
 @app.command(epilog=examples.SIMULATE)
 def simulate(
     plan: Annotated[
-        str,
+        str | None,
         typer.Argument(
             metavar="PLAN",
             help="An included plan (one_room, two_rooms, three_rooms, ...) or a JSON file.",
             autocompletion=completion.plans,
         ),
-    ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the sequence; must be new or empty.")],
-    seed: Annotated[int, typer.Option(help="Which draw of the sensor's noise.")] = 0,
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder for the sequence; must be new or empty.")
+    ] = None,
+    building: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KIND",
+            help="Instead of PLAN, a generated building of look-alike offices: line, ring, star or storeys.",
+            autocompletion=completion.chosen_from("line", "ring", "star", "storeys"),
+        ),
+    ] = None,
+    rooms: Annotated[int | None, typer.Option(help="Offices of --building; 12 unless given.")] = None,
+    furnishings: Annotated[
+        int | None,
+        typer.Option(help="Different furnishings of --building's offices; 1: all alike. 4 unless given."),
+    ] = None,
+    storeys: Annotated[
+        int | None, typer.Option(help="Storeys of --building storeys; 2 unless given.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(help="Which draw of the sensor's noise, and of the building with --building.")
+    ] = 0,
+    noise_seed: Annotated[
+        int | None, typer.Option(help="Draw of the noise alone, if it is not --seed's.")
+    ] = None,
+    plan_only: Annotated[
+        Path | None,
+        typer.Option("--plan-only", metavar="FILE", help="Write the plan to this file and render nothing."),
+    ] = None,
     noise: Annotated[str, typer.Option(help="sensor: as a real camera sees it; clean: exact.")] = "sensor",
     frames: Annotated[int | None, typer.Option(min=1, help="Write at most this many frames.")] = None,
     fps: Annotated[float | None, typer.Option(help="Frames per second, the plan's unless given.")] = None,
@@ -261,14 +288,21 @@ def simulate(
     ] = 5,
     workers: Annotated[int | None, typer.Option(min=1, help="Threads; at most 4 unless given.")] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an earlier simulation in --out.")
+        bool,
+        typer.Option("--overwrite", help="Replace an earlier simulation in --out, or --plan-only's file."),
     ] = False,
 ) -> None:
     """Render a recorded sequence with exact ground truth from a plan of rooms."""
     with told():
-        from vsgraphs.cli.make_sequence import make_sequence
+        from vsgraphs.cli.choose_plan import PlanChoice, write_plan
+        from vsgraphs.cli.make_sequence import make_sequence, out_folder
         from vsgraphs.simulate import Output
 
+        choice = PlanChoice(plan, building, rooms, furnishings, storeys, seed)
+        if plan_only is not None:
+            write_plan(choice, plan_only, overwrite=overwrite, with_out=out is not None)
+            return
+        chosen = choice.plan()
         output = Output(
             fps=fps,
             every=every,
@@ -277,7 +311,14 @@ def simulate(
             workers=workers,
             overwrite=overwrite,
         )
-        code = make_sequence(plan, out, seed=seed, noise=noise, frames=frames, output=output)
+        code = make_sequence(
+            chosen,
+            out_folder(out),
+            seed=seed if noise_seed is None else noise_seed,
+            noise=noise,
+            frames=frames,
+            output=output,
+        )
     raise typer.Exit(code)
 
 

@@ -4,16 +4,39 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.progress import Progress
 from vsgraphs.cli.session import Tally
+from vsgraphs.errors import InputError
+from vsgraphs.export.atomic import write_atomically
+from vsgraphs.plans import plan_text
 from vsgraphs.simulate import Output, simulate
 
 
-def make_sequence(plan: str, out: Path, *, seed: int, noise: str, frames: int | None, output: Output) -> int:
-    """Renders, shows how far it is, says what was written; returns the exit code. Raises InputError."""
+def out_folder(out: Path | None) -> Path:
+    """Raises InputError if there is none."""
+    if out is None:
+        raise InputError("--out DIR is missing: the folder for the sequence (or --plan-only FILE)")
+    return out
+
+
+def make_sequence(
+    plan: str | Mapping[str, Any],
+    out: Path,
+    *,
+    seed: int,
+    noise: str,
+    frames: int | None,
+    output: Output,
+) -> int:
+    """Renders, shows how far it is, says what was written; returns the exit code. Raises InputError.
+
+    plan: name or file, or a generated one: that is written as plan.json beside the frames.
+    """
     began = time.monotonic()
     bar = _Bar()
     with Interrupt() as interrupt:
@@ -31,6 +54,8 @@ def make_sequence(plan: str, out: Path, *, seed: int, noise: str, frames: int | 
     if not done.frames:
         print("interrupted before the first frame: nothing was written", file=sys.stderr)
         return interrupt.exit_code
+    if isinstance(plan, Mapping):
+        write_atomically(out / "plan.json", plan_text(plan))
     if not done.complete:
         print("interrupted: the frames so far are kept", file=sys.stderr)
     took = time.monotonic() - began

@@ -1,8 +1,11 @@
-"""Plans of synthetic places: the included ones (`*.json` beside this file) and the reader for any.
+"""Plans of synthetic places: the included ones (`*.json` beside this file), generated ones, and the reader
+for any.
 
 `docs/simulator.md` explains the format.
 """
 
-from vsgraphs.plans.load import LoadedPlan, load_plan, plan_names
+from vsgraphs.plans.buildings import BUILDING_KINDS, building
+from vsgraphs.plans.load import LoadedPlan, load_plan, plan_names, plan_path
+from vsgraphs.plans.write import plan_text
 
-__all__ = ["LoadedPlan", "load_plan", "plan_names"]
+__all__ = ["BUILDING_KINDS", "LoadedPlan", "building", "load_plan", "plan_names", "plan_path", "plan_text"]

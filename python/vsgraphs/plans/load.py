@@ -40,7 +40,7 @@ def load_plan(source: str | Path | Mapping[str, Any]) -> LoadedPlan:
     """
     if isinstance(source, Mapping):
         return _convert(dict(source), "plan", None)
-    path = _path_of(source)
+    path = plan_path(source)
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -56,7 +56,8 @@ def load_plan(source: str | Path | Mapping[str, Any]) -> LoadedPlan:
     return _convert(values, str(path), path.stem)
 
 
-def _path_of(source: str | Path) -> Path:
+def plan_path(source: str | Path) -> Path:
+    """The file of an included plan, by name, or of any other. Raises InputError for a name unknown."""
     path = Path(source)
     if path.suffix or path.is_file():
         return path
