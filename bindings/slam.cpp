@@ -236,14 +236,39 @@ void bind_slam(nb::module_& m) {
           },
           "keyframes in all of them");
   nb::class_<Slam>(m, "Slam", "RGB-D SLAM: frames in, trajectory and map out.")
-      .def(nb::init<const Config&, const Camera&>(), "config"_a, "camera"_a,
-           "Raises InputError if the configuration or the camera make no sense.")
-      .def(nb::init<const Config&, const Camera&, const AtlasState&>(), "config"_a, "camera"_a, "atlas"_a,
-           "Starts from the maps of an earlier run: the camera begins lost and is looked for in them; where "
-           "nothing is\n"
-           "recognised it starts a map of its own, which is joined with them when a place is. With "
-           "system.localise_only the\n"
-           "maps stay as they are. Raises InputError as above, and for system.localise_only without a map.")
+      .def(
+          "__init__",
+          [](Slam* self, const Config& config, const Camera& camera, const AtlasState& atlas,
+             std::optional<bool> realtime) {
+            Config wanted = config;
+            if (realtime) wanted.system.realtime = *realtime;
+            require_input(!realtime.value_or(false) || wanted.system.execution == "threaded",
+                          "realtime: needs system.execution = threaded; serial execution does all mapping "
+                          "within track()");
+            new (self) Slam(wanted, camera, atlas);
+          },
+          "config"_a, "camera"_a, "atlas"_a = AtlasState{}, nb::kw_only(), "realtime"_a = nb::none(),
+          nb::sig("def __init__(self, config: Config, camera: Camera, atlas: AtlasState = ..., *, realtime: "
+                  "bool | None = None) -> None"),
+          "Args:\n"
+          "  config, camera: options, and the camera whose images will come.\n"
+          "  atlas: maps of an earlier run (atlas_state()) to start from: the camera begins lost and is "
+          "looked "
+          "for in\n"
+          "    them; where nothing is recognised it starts a map of its own, which is joined with them when "
+          "a "
+          "place\n"
+          "    is. With system.localise_only the maps stay as they are.\n"
+          "  realtime: True for a live camera: track() never waits for mapping, and answers within "
+          "milliseconds.\n"
+          "    False for a recording: track() waits where mapping lags, so that results do not hang on how "
+          "fast the\n"
+          "    machine is; that can take seconds. None: as config says (system.realtime, by default "
+          "False).\n\n"
+          "Raises InputError if configuration or camera make no sense, for realtime with serial execution, "
+          "and "
+          "for\n"
+          "system.localise_only without a map.")
       .def(
           "track",
           [](Slam& slam, const AnyImage& rgb, const AnyImage& depth, double timestamp) {

@@ -125,6 +125,21 @@ def test_a_run_starts_from_the_maps_of_another(scene: Scene, camera: vsgraphs.Ca
     assert located.atlas_state().keyframes == atlas.keyframes
 
 
+def test_a_live_camera_never_waits_for_mapping(scene: Scene, camera: vsgraphs.Camera) -> None:
+    slam = vsgraphs.Slam(vsgraphs.Config(), camera, realtime=True)
+    for i in range(scene.frames):
+        slam.track(scene.rgb(i), scene.depth(i), scene.stamp(i))
+    slam.finish()
+    assert slam.statistics()["waited_s"] == 0.0
+    assert len(slam.trajectory()[0]) == scene.frames
+
+    serial = vsgraphs.Config()
+    serial.set("system.execution", "serial")
+    with pytest.raises(vsgraphs.InputError, match="threaded"):
+        vsgraphs.Slam(serial, camera, realtime=True)
+    vsgraphs.Slam(serial, camera, realtime=False)
+
+
 def test_config_and_camera_mistakes(camera: vsgraphs.Camera) -> None:
     config = vsgraphs.Config()
     with pytest.raises(vsgraphs.InputError, match=r"system\.seed"):
