@@ -134,6 +134,8 @@ std::vector<const SpanRecorder*> Slam::spans() const {
   return finished_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
 }
 
+void Slam::stop() { executor_->stop(); }
+
 void Slam::finish() {
   const std::lock_guard lock(frames_mutex_);
   if (finished_) return;
@@ -202,6 +204,11 @@ RunStatistics Slam::statistics() const {
     s.warnings.push_back(std::to_string(content.counts.dropped_maps) + " map(s) of fewer than " +
                          std::to_string(config_.system.min_map_keyframes) +
                          " keyframes were dropped when a new one began");
+  if (executor_->backlog() > 0)
+    s.warnings.push_back(std::to_string(executor_->backlog()) +
+                         " keyframes waited for mapping when the run was stopped; the map lacks them");
+  if (content.counts.unadjusted)
+    s.warnings.push_back("the run was stopped before the whole map was adjusted to its last loop");
   if (s.elsewhere > 0)
     s.warnings.push_back(std::to_string(s.elsewhere) +
                          " tracked frames are in maps that were never joined with the one given out; the "
