@@ -135,7 +135,9 @@ def test_options_reach_the_core(recorded: Path, tmp_path: Path, vsgraphs: Progra
     assert configuration["system.min_map_keyframes"] == 3  # the command line has the last word
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 def test_interrupted_runs_keep_their_results(
     recorded: Path, tmp_path: Path, number: signal.Signals, code: int
 ) -> None:

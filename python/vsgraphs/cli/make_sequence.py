@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.progress import Progress
 from vsgraphs.cli.session import Tally
 from vsgraphs.simulate import Output, simulate
+from vsgraphs.simulate.folder import part_of
 
 
 def make_sequence(plan: str, out: Path, *, seed: int, noise: str, frames: int | None, output: Output) -> int:
     """Renders, shows how far it is, says what was written; returns the exit code. Raises InputError."""
     began = time.monotonic()
     bar = _Bar()
-    with Interrupt() as interrupt:
+    with Interrupt(partial(_discard, out)) as interrupt:
         done = simulate(
             plan,
             out,
@@ -39,6 +42,12 @@ def make_sequence(plan: str, out: Path, *, seed: int, noise: str, frames: int | 
         f"({took:.1f} s, {done.frames / took:.1f} frames/s)"
     )
     return interrupt.exit_code
+
+
+def _discard(out: Path) -> str:
+    """For a process that ends before the frames so far have become a sequence."""
+    shutil.rmtree(part_of(out), ignore_errors=True)
+    return "interrupted: nothing was kept"
 
 
 class _Bar:
