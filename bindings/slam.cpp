@@ -347,6 +347,11 @@ void bind_slam(nb::module_& m) {
           "The newest map. Cheap, from any thread.")
       .def("atlas_state", &Slam::atlas_state, nb::call_guard<nb::gil_scoped_release>(),
            "All maps as known now; complete after finish(). Any thread; tracking is not held up.")
+      .def("stop", &Slam::stop, nb::call_guard<nb::gil_scoped_release>(),
+           "Has the run end soon; any thread, also while another one is in track() or finish().\n"
+           "A track() that waits for mapping passes its frame over, as do all later ones (status waiting,\n"
+           "nothing counted); keyframes that wait for mapping are left out, and the whole map is no longer\n"
+           "adjusted. finish() is still to be called.")
       .def("finish", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(),
            "Ends the work under way; track() is an error afterwards.")
       .def("close", &Slam::finish, nb::call_guard<nb::gil_scoped_release>(), "The same as finish().")

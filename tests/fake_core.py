@@ -33,7 +33,7 @@ class Slam:
         self.stamps: list[float] = []
         self.seen = 0
         self.accepted = 0  # frames that were not refused: what the core counts
-        self.finished = False
+        self.finished = self.stopped = False
         self.segmentations: list[tuple[int, np.ndarray, np.ndarray | None, np.ndarray | None]] = []
 
     def track(self, rgb: np.ndarray, depth: np.ndarray, timestamp: float) -> Result:
@@ -55,6 +55,9 @@ class Slam:
         if self.finished:
             raise InputError("add_segmentation() after finish()")
         self.segmentations.append((frame_index, roles, confidence, instances))
+
+    def stop(self) -> None:
+        self.stopped = True
 
     def finish(self) -> None:
         self.finished = True

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from conftest import Program, one_line_error, report
+from PIL import Image
 
 from vsgraphs.cli.output import remove_earlier, results_folder
 from vsgraphs.errors import InputError
@@ -110,6 +112,21 @@ def test_an_earlier_run_s_files_are_not_mixed_with_these(
     left = {path.name for path in tmp_path.iterdir() if path.is_file()}
     assert left == {"run.json", "trajectory.txt", "notes.txt", "house.vsg"}
     assert "of an earlier run: floorplan.svg, scene_graph.json" in capsys.readouterr().err
+
+
+def test_a_run_that_tracks_nothing_leaves_good_results_alone(
+    sequence: Path, tmp_path: Path, vsgraphs: Program
+) -> None:
+    out = tmp_path / "results"
+    assert vsgraphs("run", sequence, "--out", out, "--max-frames", 20).returncode == 0
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    for image in (sequence / "rgb").iterdir():  # the lens cap is on
+        Image.new("RGB", Image.open(image).size).save(image)
+    done = vsgraphs("run", sequence, "--out", out, "--max-frames", 20)
+    assert done.returncode == 2
+    assert f"the results of an earlier run in {out} stay" in done.stderr
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    assert json.loads((tmp_path / "results-2" / "run.json").read_text())["tracked"] == 0
 
 
 def test_files_that_no_run_left_stay(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

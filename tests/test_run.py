@@ -135,16 +135,22 @@ def test_options_reach_the_core(recorded: Path, tmp_path: Path, vsgraphs: Progra
     assert configuration["system.min_map_keyframes"] == 3  # the command line has the last word
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 def test_interrupted_runs_keep_their_results(
     recorded: Path, tmp_path: Path, number: signal.Signals, code: int
 ) -> None:
     out = tmp_path / "out"
+    atlas = tmp_path / "atlas.vsg"  # there once something was tracked
     command = [sys.executable, "-m", "vsgraphs", "run", str(recorded), "--out", str(out), "--realtime"]
+    command += ["--save-atlas", str(atlas), "--autosave", "0.3"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        process.stdout.readline()  # the sequence has been opened
-        time.sleep(2.5)
+        deadline = time.monotonic() + 60
+        while not atlas.exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
         process.send_signal(number)
         _, errors = process.communicate(timeout=60)
     assert process.returncode == code, errors

@@ -130,6 +130,38 @@ def test_an_empty_map() -> None:
 # ---- nodes and edges
 
 
+def plain_hull(uv: np.ndarray) -> np.ndarray:
+    """Andrew's monotone chain, over all points."""
+    points = [(float(u), float(v)) for u, v in np.unique(np.round(uv, 3), axis=0)]
+    if len(points) < 3:
+        return np.array(points)
+    halves = []
+    for ordered in (points, points[::-1]):
+        chain: list[tuple[float, float]] = []
+        for u, v in ordered:
+            while len(chain) > 1:
+                (u0, v0), (u1, v1) = chain[-2:]
+                if (u1 - u0) * (v - v0) - (v1 - v0) * (u - u0) > 1e-9:
+                    break
+                chain.pop()
+            chain.append((u, v))
+        halves += chain[:-1]
+    return np.array(halves)
+
+
+def test_hulls_are_those_of_all_points() -> None:
+    rng = np.random.default_rng(5)
+    shapes = [
+        rng.normal(size=(400, 2)),
+        rng.integers(-5, 6, size=(300, 2)) * 0.1,  # many on the edges
+        rng.uniform(-1, 1, size=(300, 2)) * [10, 0.003] + 100,  # a strip
+        np.repeat(rng.normal(size=(50, 1)), 2, axis=1),  # a line
+        np.ones((7, 2)),
+    ]
+    for points in [*shapes, *(shapes[0][:n] for n in range(1, 20))]:
+        np.testing.assert_array_equal(convex_hull(points), plain_hull(points))
+
+
 def test_extents_leave_doorways_out(graph: SceneGraph) -> None:
     whole, with_door = graph.planes[0], graph.planes[2]
     assert whole.area_m2 == pytest.approx(4.0 * 2.6, rel=0.03)

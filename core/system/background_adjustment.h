@@ -27,8 +27,10 @@ class BackgroundAdjustment {
   void work_on(const std::shared_ptr<FullAdjustment>& wanted, std::int64_t frame);
   // Whether `adjustment` is the one worked on and has run. Rethrows what made it fail.
   bool has_finished(const std::shared_ptr<FullAdjustment>& adjustment) const;
-  // Until the one worked on has run.
+  // Until the one worked on has run, or was given up.
   void wait();
+  // Any thread: the one under way comes to its end between two iterations, without a result. Does not wait for that.
+  void give_up() { stop_ = true; }
 
   // Not while one is under way.
   const SpanRecorder& spans() const { return spans_; }

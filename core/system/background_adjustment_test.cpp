@@ -60,6 +60,18 @@ TEST_F(BackgroundAdjustmentTest, AnotherOneWantedStopsTheFirst) {
   EXPECT_EQ(done_.size(), 1U) << "the first one never came to its end";
 }
 
+TEST_F(BackgroundAdjustmentTest, GivenUpEndsWithoutAResult) {
+  world_.map.apply(
+      MoveKeyframe{world_.ids[3], world_.truth[3].retract((Vector6d() << 1, 2, 1, 1, 1, 1).finished())});
+  snapshot_ = world_.map.snapshot();
+  const auto endless = of_this_map(1'000'000);
+  background_.work_on(endless, 0);
+  background_.give_up();
+  background_.wait();
+  EXPECT_FALSE(background_.has_finished(endless));
+  EXPECT_EQ(done_.size(), 0U);
+}
+
 TEST_F(BackgroundAdjustmentTest, WhatFailsIsThrownWhereItIsAskedFor) {
   const auto impossible = of_this_map(-1);
   background_.work_on(impossible, 0);

@@ -26,6 +26,9 @@ class Executor {
   virtual void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) = 0;
   // Waits for all work; afterwards the map is final. May be called twice.
   virtual void finish() = 0;
+  // Any thread, any time: nothing that takes long is begun from here on. A track() that waits for mapping comes back empty, as
+  // do all later ones; requests that wait are left out, an adjustment of the whole map is dropped between two iterations.
+  virtual void stop() = 0;
 
   // The newest maps; any thread.
   virtual SnapshotCell::Content content() const = 0;

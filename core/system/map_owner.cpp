@@ -24,15 +24,17 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
   publish();
 }
 
-void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining) {
+void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining,
+                       const std::function<bool()>& stop) {
+  const auto go_on = [&stop] { return !stop || !stop(); };
   insert(request);
   if (options_.builds_scene()) find_planes();
-  if (options_.builds_structure() && rooms_due()) find_rooms(false);
+  if (options_.builds_structure() && rooms_due() && go_on()) find_rooms(false);
   refine(stop_refining);
-  look_for_loop();
+  if (go_on()) look_for_loop();
   if (loop_found()) {
     close_loop();
-  } else {
+  } else if (go_on()) {
     look_for_join();
     if (join_found()) join_maps();
   }
@@ -40,11 +42,15 @@ void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool(
   publish();
 }
 
-void MapOwner::end_run() {
+void MapOwner::end_run(const std::function<bool()>& stop) {
   if (inserted_ == 0) return;
   settle();
-  adjust_here();
-  if (options_.builds_structure()) find_rooms(true);
+  adjust_here(stop);
+  const bool stopped = stop && stop();
+  counts_.unadjusted = adjustment_ != nullptr;
+  if (stopped) drop_adjustment();
+  if (options_.builds_structure()) find_rooms(!stopped);
+  publish();
 }
 
 void MapOwner::insert(const KeyframeRequest& request) {
@@ -129,11 +135,8 @@ void MapOwner::drop_adjustment() {
   completed_before_adjustment_.reset();
 }
 
-void MapOwner::adjust_here() {
-  while (adjustment_) {
-    run_adjustment();
-    finish_adjustment();
-  }
+void MapOwner::adjust_here(const std::function<bool()>& stop) {
+  while (adjustment_ && !(stop && stop()) && run_adjustment(stop)) finish_adjustment();
 }
 
 void MapOwner::take_in_adjustment() {

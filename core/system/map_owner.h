@@ -26,11 +26,13 @@ class MapOwner {
   MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known = {});
 
   // All that a keyframe brings about, in the order of the steps below; `stop_refining` is asked between iterations of the
-  // window's adjustment. Afterwards adjustment() is what the executor has to run, here or beside.
-  void work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining);
+  // window's adjustment. Afterwards adjustment() is what the executor has to run, here or beside. Once `stop` says so, what
+  // takes long is left out: rooms and loops.
+  void work_on(const KeyframeRequest& request, const std::function<bool()>& stop_refining,
+               const std::function<bool()>& stop = {});
   // At the end of the run: the map this run made most of is the one given out, adjusted if that is still to be done, with its
-  // rooms.
-  void end_run();
+  // rooms. Once `stop` says so, without what takes long: the adjustment, free space carved anew.
+  void end_run(const std::function<bool()>& stop = {});
 
   // One step each: request -> keyframe in the map; its planes -> map; a late segmentation of a keyframe -> its planes
   // sought again; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
@@ -49,9 +51,10 @@ class MapOwner {
   // another one, or none, once a loop has moved the map or another map is worked on. When it has run, take_in_adjustment()
   // brings what it came to into the map as it is by then.
   const std::shared_ptr<FullAdjustment>& adjustment() const { return adjustment_; }
-  void run_adjustment() { adjustment_->run({}, &spans_); }  // here, on the owner's thread
-  // Runs and finishes what is to be adjusted, here, until nothing is.
-  void adjust_here();
+  // Here, on the owner's thread. False, and nothing to take in, where `stop` said so.
+  bool run_adjustment(const std::function<bool()>& stop = {}) { return adjustment_->run(stop, &spans_); }
+  // Runs and finishes what is to be adjusted, here, until nothing is or `stop` says so.
+  void adjust_here(const std::function<bool()>& stop = {});
   void take_in_adjustment();
   // With the rooms of the adjusted map.
   void finish_adjustment();

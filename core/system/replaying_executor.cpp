@@ -1,3 +1,4 @@
+#include <atomic>
 #include <deque>
 #include <map>
 
@@ -19,7 +20,7 @@ class ReplayingExecutor : public Executor {
         owner_(config, camera, cell_, known) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
-    if (next_frame_ >= schedule_.frames.size()) return std::nullopt;
+    if (stopped_ || next_frame_ >= schedule_.frames.size()) return std::nullopt;
     const FrameEvent& event = schedule_.frames[next_frame_];
     if (event.timestamp_s != frame.timestamp_s) return std::nullopt;  // dropped in the recorded run
     ++next_frame_;
@@ -38,12 +39,14 @@ class ReplayingExecutor : public Executor {
   }
 
   void finish() override {
+    if (stopped_) return;
     require_run(next_frame_ == schedule_.frames.size(),
                 "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
                     " frames, but only " + std::to_string(next_frame_) +
                     " of them came; replay it on the sequence it was recorded on");
     advance_to(schedule_.edits.size());
   }
+  void stop() override { stopped_ = true; }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
   std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
@@ -53,7 +56,7 @@ class ReplayingExecutor : public Executor {
 
  private:
   void advance_to(std::uint64_t version) {
-    while (owner_.version() < version) {
+    while (owner_.version() < version && !stopped_) {
       require_run(owner_.version() < schedule_.edits.size(),
                   "replay: the schedule ends before its last frame; it was cut off");
       const EditEvent& event = schedule_.edits[owner_.version()];
@@ -131,6 +134,7 @@ class ReplayingExecutor : public Executor {
   }
 
   Schedule schedule_;
+  std::atomic<bool> stopped_ = false;
   SnapshotCell cell_;
   TrackingLane tracking_;
   MapOwner owner_;

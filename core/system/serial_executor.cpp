@@ -1,3 +1,5 @@
+#include <atomic>
+
 #include "core/system/executor.h"
 #include "core/system/map_owner.h"
 #include "core/system/tracking_lane.h"
@@ -12,9 +14,11 @@ class SerialExecutor : public Executor {
       : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_, known) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
+    if (stopped_) return std::nullopt;
     TrackedFrame result = tracking_.track(frame, cell_.take());
-    if (result.keyframe_request) owner_.work_on(*result.keyframe_request, {});
-    owner_.adjust_here();
+    const auto stopped = [this] { return stopped_.load(); };
+    if (result.keyframe_request) owner_.work_on(*result.keyframe_request, stopped, stopped);
+    owner_.adjust_here(stopped);
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
@@ -24,9 +28,10 @@ class SerialExecutor : public Executor {
     owner_.mark(frame_index, *detections);
   }
   void finish() override {
-    if (!finished_) owner_.end_run();
+    if (!finished_) owner_.end_run([this] { return stopped_.load(); });
     finished_ = true;
   }
+  void stop() override { stopped_ = true; }
   SnapshotCell::Content content() const override { return cell_.take(); }
   std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return 0; }
@@ -36,6 +41,7 @@ class SerialExecutor : public Executor {
  private:
   SystemOptions options_;
   bool finished_ = false;
+  std::atomic<bool> stopped_ = false;
   SnapshotCell cell_;
   TrackingLane tracking_;
   MapOwner owner_;

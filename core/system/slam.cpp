@@ -148,6 +148,8 @@ std::vector<const SpanRecorder*> Slam::spans() const {
   return ended_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
 }
 
+void Slam::stop() { executor_->stop(); }
+
 void Slam::finish() {
   const std::lock_guard lock(frames_mutex_);
   if (finished_) return;
@@ -210,6 +212,11 @@ void Slam::add_what_the_end_tells(RunStatistics& s) const {
     s.warnings.push_back(std::to_string(dropped) + " map(s) of fewer than " +
                          std::to_string(config_.system.min_map_keyframes) +
                          " keyframes were dropped when a new one began");
+  if (executor_->backlog() > 0)
+    s.warnings.push_back(std::to_string(executor_->backlog()) +
+                         " keyframes waited for mapping when the run was stopped; the map lacks them");
+  if (content.counts.unadjusted)
+    s.warnings.push_back("the run was stopped before the whole map was adjusted to its last loop");
   if (s.elsewhere > 0)
     s.warnings.push_back(std::to_string(s.elsewhere) +
                          " tracked frames are in maps that were never joined with the one given out; the "

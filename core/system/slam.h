@@ -71,6 +71,10 @@ class Slam {
   // Keyframes waiting for the mapper. Any thread, any time, at a cost that does not grow; tracking is not held up.
   std::int64_t backlog() const;
 
+  // Any thread, any time, also while another one is in track() or finish(): nothing that takes long is begun from here on. A
+  // track() that waits for mapping passes its frame over, as do all later ones (status waiting, nothing counted); keyframes
+  // that wait for mapping are left out, the whole map is no longer adjusted. finish() is still to be called, and soon done.
+  void stop();
   // Ends the work that is under way; further calls of track() are an error. May be called twice. Throws what went
   // wrong in a worker, RunError where a replay departed; the trajectory so far can still be asked for.
   void finish();

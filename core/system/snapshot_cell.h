@@ -12,9 +12,10 @@
 namespace vsgraphs {
 
 struct AtlasCounts {
-  int loops = 0;         // closed
-  int merges = 0;        // maps joined
-  int dropped_maps = 0;  // too small to be kept when a new one began
+  int loops = 0;            // closed
+  int merges = 0;           // maps joined
+  int dropped_maps = 0;     // too small to be kept when a new one began
+  bool unadjusted = false;  // the run was stopped before the whole map was adjusted to its last loop
 };
 
 // Of places in the map worked on, and in the dormant ones.

@@ -29,8 +29,10 @@ class ThreadedExecutor : public Executor {
   ~ThreadedExecutor() override { stop_worker(); }
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
+    if (stopped_) return std::nullopt;
     rethrow_worker_failure();
     if (!options_.realtime) wait_for_mapper(frame.timestamp_s);
+    if (stopped_) return std::nullopt;
     TrackedFrame result = tracking_.track(frame, cell_.take());
     if (result.keyframe_request) {
       if (!options_.realtime) unfinished_.push_back(frame.timestamp_s);
@@ -52,6 +54,13 @@ class ThreadedExecutor : public Executor {
   void finish() override {
     stop_worker();
     rethrow_worker_failure();
+  }
+
+  void stop() override {
+    stopped_ = true;
+    requests_.close();
+    cell_.close();
+    background_.give_up();
   }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
@@ -80,15 +89,17 @@ class ThreadedExecutor : public Executor {
 
   void work() {
     give_way(5);
+    const auto stopped = [this] { return stopped_.load(); };
     try {
       while (const auto work = requests_.pop()) {
+        if (stopped_) break;
         if (work->labels) owner_.label(work->frame, *work->labels);
         if (work->markers) owner_.mark(work->frame, *work->markers);
-        if (work->request) owner_.work_on(*work->request, [this] { return cut_short(); });
+        if (work->request) owner_.work_on(*work->request, [this] { return cut_short(); }, stopped);
         adjust_beside();
       }
       adjust_to_the_end();
-      owner_.end_run();
+      owner_.end_run(stopped);
     } catch (const std::exception& error) {
       // Whatever it was, it was not the frame the tracker is at: it must not look like bad input of that frame.
       failure_ = std::make_exception_ptr(std::runtime_error(std::string("mapping failed: ") + error.what()));
@@ -104,7 +115,7 @@ class ThreadedExecutor : public Executor {
   }
 
   void adjust_to_the_end() {
-    while (owner_.adjustment()) {
+    while (owner_.adjustment() && !stopped_) {
       background_.wait();
       adjust_beside();
     }
@@ -112,7 +123,7 @@ class ThreadedExecutor : public Executor {
 
   // At the camera's pace, a window's adjustment gives way to the keyframes that wait. Otherwise tracking waits for it, so
   // that accuracy does not hang on how fast the machine is.
-  bool cut_short() const { return options_.realtime && requests_.size() >= 2; }
+  bool cut_short() const { return stopped_ || (options_.realtime && requests_.size() >= 2); }
 
   // As far as a camera would have let mapping come: at its pace, what a keyframe brings about is done some frames later.
   // Otherwise a sequence of few frames per second would be tracked on a map that is always a long way behind.
@@ -144,6 +155,7 @@ class ThreadedExecutor : public Executor {
   BoundedQueue<Work> requests_;
   BackgroundAdjustment background_;
   std::exception_ptr failure_;
+  std::atomic<bool> stopped_ = false;
   std::deque<double> unfinished_;     // timestamps of requests that need not be completed yet
   std::atomic<double> waited_s_ = 0;  // read by others
   std::thread worker_;

@@ -75,6 +75,21 @@ TEST(WholeMapAdjustment, ThatComesLateFitsTheMapThatWentOn) {
   EXPECT_LT(walk.largest_error_m(), 0.03);
 }
 
+TEST(WholeMapAdjustment, IsLeftOutOfARunThatIsStopped) {
+  StepByStep walk;
+  walk.walk(0, 160);
+  walk.cover();
+  for (int px = 520; !walk.owner().adjustment() && px > 100; px -= 8) walk.see(px);
+  ASSERT_NE(walk.owner().adjustment(), nullptr);
+  walk.owner().end_run([] { return true; });
+  EXPECT_EQ(walk.owner().adjustment(), nullptr);
+  EXPECT_TRUE(walk.content().counts.unadjusted);
+  EXPECT_EQ(walk.content().completed, walk.content().inserted) << "nobody waits for it";
+  const std::vector<EditEvent>& edits = walk.owner().edits();
+  EXPECT_EQ(edits.back().kind, EditEvent::Kind::rooms) << "the last pass, but no more than a usual one";
+  for (const EditEvent& edit : edits) EXPECT_NE(edit.kind, EditEvent::Kind::adjust);
+}
+
 TEST(WholeMapAdjustment, IsPutOffWhileAnotherMapIsWorkedOn) {
   StepByStep walk;
   walk.walk(0, 160);

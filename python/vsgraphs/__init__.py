@@ -11,9 +11,12 @@ Importing the package loads nothing; each name loads what it needs at first use.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+# Not typing's, which takes longer to import than all else that the program does before it heeds Ctrl-C.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from vsgraphs._core import Atlas as Atlas
     from vsgraphs._core import AtlasState as AtlasState
     from vsgraphs._core import Camera as Camera

@@ -11,3 +11,7 @@ class RunError(RuntimeError):
 
 class FrameError(InputError):
     """One frame of a sequence cannot be read (missing, truncated, wrong size). The others still can."""
+
+
+class StalledError(FrameError):
+    """The images of one frame did not come within the time limit: a disk or network that does not answer."""

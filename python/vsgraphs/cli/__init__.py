@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 
 def main() -> None:
     """Entry point: runs the command line and ends the process with its exit code."""
-    import os
+    try:
+        from vsgraphs.cli.interrupt import leave_at_once, let_die
 
+        leave_at_once()
+    except KeyboardInterrupt:
+        os._exit(130)
     # numpy's linear algebra would start a thread per core, which nothing here uses. Before numpy is imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from vsgraphs.cli.failures import told
 
-    with told():
-        from vsgraphs.compiled import check_processor
+    try:
+        with told():
+            from vsgraphs.compiled import check_processor
 
-        check_processor()  # before numpy, which an old processor does not run either, and says so less kindly
-        from vsgraphs.cli.app import app
+            # Before numpy, which an old processor does not run either, and says so less kindly.
+            check_processor()
+            from vsgraphs.cli.app import app
 
-        app()
-    sys.exit(0)
+            app()
+        sys.exit(0)
+    finally:
+        let_die()

@@ -137,6 +137,14 @@ def run(
             help="Save this often meanwhile too, in --save-atlas or atlas.vsg in --out.",
         ),
     ] = None,
+    frame_timeout: Annotated[
+        float,
+        typer.Option(
+            metavar="SECONDS",
+            min=0.1,
+            help="Skip a frame whose images cannot be read within this time (a network disk that stalls).",
+        ),
+    ] = 10.0,
 ) -> None:
     """Track a camera through a recorded sequence: trajectory, map, scene graph, floor plan."""
     from vsgraphs.cli.output import results_folder
@@ -167,6 +175,7 @@ def run(
             save_atlas=save_atlas,
             load_atlas=load_atlas,
             autosave_s=autosave,
+            frame_timeout_s=frame_timeout,
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
             showing=Showing(view, record, view_port, web),
         )

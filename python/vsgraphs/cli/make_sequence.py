@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import time
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
 from vsgraphs.plans import plan_text
 from vsgraphs.simulate import Output, simulate
+from vsgraphs.simulate.folder import part_of
 
 
 def out_folder(out: Path | None) -> Path:
@@ -39,7 +42,7 @@ def make_sequence(
     """
     began = time.monotonic()
     bar = _Bar()
-    with Interrupt() as interrupt:
+    with Interrupt(partial(_discard, out)) as interrupt:
         done = simulate(
             plan,
             out,
@@ -64,6 +67,12 @@ def make_sequence(
         f"({took:.1f} s, {done.frames / took:.1f} frames/s)"
     )
     return interrupt.exit_code
+
+
+def _discard(out: Path) -> str:
+    """For a process that ends before the frames so far have become a sequence."""
+    shutil.rmtree(part_of(out), ignore_errors=True)
+    return "interrupted: nothing was kept"
 
 
 class _Bar:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import json
 import os
 import sys
 from collections.abc import Collection, Iterator
@@ -55,6 +56,16 @@ def _safe(name: str) -> str:
     """A name that every file system and shell takes: letters, digits, . _ -, in front a letter or digit."""
     kept = "".join(c if c.isalnum() or c in "._-" else "_" for c in name).lstrip(".-_")
     return kept.encode()[:_LONGEST].decode(errors="ignore") or "sequence"
+
+
+def holds_a_trajectory(out: Path) -> bool:
+    """Whether an earlier run that tracked something left its results there; what cannot be read may be one."""
+    try:
+        return json.loads((out / "run.json").read_bytes()).get("tracked", 1) > 0
+    except FileNotFoundError:
+        return False
+    except (OSError, ValueError, AttributeError, TypeError):
+        return True
 
 
 def remove_earlier(out: Path, written: Collection[str]) -> None:

@@ -50,6 +50,11 @@ class Progress:
         self.clear()
         self._write(f"{line}\n")
 
+    def doing(self, what: str) -> None:
+        """What goes on once there are no more frames: on a terminal, in place of the bar."""
+        if self._terminal:
+            self._draw(f"{what} ...")
+
     def clear(self) -> None:
         """Takes the bar away."""
         if self._drawn:

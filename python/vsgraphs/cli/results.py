@@ -12,7 +12,6 @@ from vsgraphs.cli import measures
 from vsgraphs.cli.output import remove_earlier
 from vsgraphs.cli.summary import what_is_missing
 from vsgraphs.compiled import core
-from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
 from vsgraphs.export.class_colours import class_colours
 from vsgraphs.export.floorplan import format_floorplan
@@ -25,9 +24,10 @@ from vsgraphs.trajectory import format_tum
 from vsgraphs.version import commit, versions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from vsgraphs.cli.result_folder import ResultFolder, Write
     from vsgraphs.cli.session import Tally
     from vsgraphs.cli.viewing import RunView
     from vsgraphs.datasets import RecordedSequence
@@ -49,7 +49,6 @@ class MarkerOutcome:
 class RunOutcome:
     """A finished run, before it is written."""
 
-    out: Path
     sequence: RecordedSequence
     config: Any
     slam: Any
@@ -65,53 +64,91 @@ class RunOutcome:
     warnings: list[str] = field(default_factory=list)  # of saving meanwhile
 
 
-def write_results(outcome: RunOutcome) -> dict[str, Any]:
-    """Writes all files, the trajectory first; returns run.json's content.
+# What cannot be had again comes first, then what makes it worth having; the rest can be told from the atlas.
+_FIRST = ("trajectory.txt", "scene_graph.json")
+_SCENE_FILES = ("floorplan.svg", "planes.ply", "scene_graph.dsg.json")
 
-    When one cannot be written the others are still tried; then InputError names all that are missing.
+
+def expected_files(mode: str, atlas: Path | None) -> list[str]:
+    """What a run in `system.mode` leaves, in the order it is written in."""
+    names = [*_FIRST, *([str(atlas)] if atlas else []), "run.json", "keyframes.txt", "map.ply", *_SCENE_FILES]
+    without = () if mode != "slam" else ("scene_graph.json", *_SCENE_FILES)
+    return [name for name in (*names, "timeline.json") if name not in without]
+
+
+def write_results(
+    outcome: RunOutcome, folder: ResultFolder, atlas: Sequence[tuple[str, Write]], show: Callable[[str], None]
+) -> dict[str, Any]:
+    """Writes all files, what matters most first; returns run.json's content.
+
+    atlas: how it is written, or nothing. When a file cannot be written the others are still tried: see
+    `folder.failure`. show: what is being done. Raises what is wrong with the scene graph, after all else.
     """
-    slam = outcome.slam
-    snapshot = slam.snapshot()
-    stamps, poses = slam.trajectory()
-    ids, keyframe_stamps, keyframe_poses = snapshot.keyframes()
-    positions, colours = snapshot.landmarks()
-    graph = None
-    if outcome.config.get("system.mode") != "slam":
-        graph = _scene_graph(outcome, snapshot.scene_graph(), (ids, keyframe_stamps, keyframe_poses))
-        poses, keyframe_poses = graph.poses_from_map(poses), graph.poses_from_map(keyframe_poses)
-        positions = graph.points_from_map(positions)
-        if outcome.map_colours == "class":
-            colours = class_colours(graph, positions)
+    scene = _Scene(outcome)
     report: dict[str, Any] = {}
 
-    def figures() -> str:  # last, so that CPU and memory are those of the whole process
-        report.update(run_report(outcome, len(stamps), len(keyframe_stamps), len(positions), graph))
+    def figures() -> str:
+        report.update(run_report(outcome, len(scene.stamps), scene.counts, scene.graph))
+        report["warnings"] += folder.warnings
         return json.dumps(report, indent=1) + "\n"
 
-    contents: dict[str, Callable[[], str | bytes]] = {
-        "trajectory.txt": lambda: format_tum(stamps, poses),
-        "keyframes.txt": lambda: format_tum(keyframe_stamps, keyframe_poses),
-        "map.ply": lambda: format_ply(positions, colours),
-        **(_scene_files(graph, poses) if graph is not None else {}),
-        "timeline.json": lambda: format_timeline(_spans(outcome)),
-        "run.json": figures,
-    }
-    remove_earlier(outcome.out, contents)
-    failures = []
-    for name, content in contents.items():
-        try:
-            write_atomically(outcome.out / name, content())
-        except InputError as error:
-            failures.append((name, str(error)))
-    if failures:
-        others = [name for name, _ in failures[1:]]
-        kept = [name for name in contents if name not in dict(failures)]
-        raise InputError(
-            failures[0][1]
-            + (f", nor {', '.join(others)}" if others else "")
-            + (f"; written: {', '.join(kept)}" if kept else "; nothing was written")
-        )
+    files = scene.files(outcome)
+    files["timeline.json"] = lambda: format_timeline(_spans(outcome))
+    remove_earlier(folder.folder, {*files, "run.json"})
+    first = [(name, _file(name, files.pop(name))) for name in _FIRST if name in files]
+    run_json = [("run.json", _file("run.json", figures))]
+    folder.write([*first, *atlas, *run_json], show)
+    if outcome.view is not None:
+        show("closing the view")
+        outcome.view.close()  # what came of it is written too
+    folder.write([(name, _file(name, content)) for name, content in files.items()], show)
+    folder.write(run_json, show)  # again, with the CPU and memory of the whole process
+    if scene.trouble is not None:
+        raise scene.trouble
     return report
+
+
+def _file(name: str, content: Callable[[], str | bytes]) -> Write:
+    return lambda folder: write_atomically(folder / name, content())
+
+
+class _Scene:
+    """What is known at the end, in the levelled frame of the scene graph if there is one."""
+
+    def __init__(self, outcome: RunOutcome) -> None:
+        snapshot = outcome.slam.snapshot()
+        self.stamps, self.poses = outcome.slam.trajectory()
+        ids, self.keyframe_stamps, self.keyframe_poses = snapshot.keyframes()
+        self.positions, self.colours = snapshot.landmarks()
+        self.counts = (len(self.keyframe_stamps), len(self.positions))
+        self.graph: SceneGraph | None = None
+        self.trouble: Exception | None = None
+        if outcome.config.get("system.mode") == "slam":
+            return
+        try:
+            raw = snapshot.scene_graph()
+            self.graph = _scene_graph(outcome, raw, (ids, self.keyframe_stamps, self.keyframe_poses))
+        except Exception as error:  # the trajectory is worth having without it, in the map's own frame
+            self.trouble = error
+            return
+        self.poses = self.graph.poses_from_map(self.poses)
+        self.keyframe_poses = self.graph.poses_from_map(self.keyframe_poses)
+        self.positions = self.graph.points_from_map(self.positions)
+
+    def files(self, outcome: RunOutcome) -> dict[str, Callable[[], str | bytes]]:
+        graph = self.graph
+
+        def points() -> bytes:
+            if graph is not None and outcome.map_colours == "class":
+                return format_ply(self.positions, class_colours(graph, self.positions))
+            return format_ply(self.positions, self.colours)
+
+        return {
+            "trajectory.txt": lambda: format_tum(self.stamps, self.poses),
+            "keyframes.txt": lambda: format_tum(self.keyframe_stamps, self.keyframe_poses),
+            "map.ply": points,
+            **(_scene_files(graph, self.poses) if graph is not None else {}),
+        }
 
 
 def _scene_graph(outcome: RunOutcome, raw: dict[str, Any], keyframes: tuple[Any, Any, Any]) -> SceneGraph:
@@ -140,9 +177,9 @@ def _scene_files(graph: SceneGraph, poses: Any) -> dict[str, Callable[[], str | 
     """What shows the scene graph; all in the graph's frame, like the trajectory."""
     return {
         "scene_graph.json": lambda: format_scene_graph(graph),
-        "scene_graph.dsg.json": lambda: format_spark_dsg(graph),
         "floorplan.svg": lambda: format_floorplan(graph, poses[:, :3, 3]),
         "planes.ply": lambda: format_planes_ply(graph),
+        "scene_graph.dsg.json": lambda: format_spark_dsg(graph),
     }
 
 
@@ -166,9 +203,10 @@ def _scene_counts(graph: SceneGraph | None) -> dict[str, Any]:
 
 
 def run_report(
-    outcome: RunOutcome, tracked: int, keyframes: int, landmarks: int, graph: SceneGraph | None
+    outcome: RunOutcome, tracked: int, mapped: tuple[int, int], graph: SceneGraph | None
 ) -> dict[str, Any]:
-    """run.json: figures, then what is needed to repeat them."""
+    """run.json: figures, then what is needed to repeat them. mapped: keyframes, landmarks."""
+    keyframes, landmarks = mapped
     statistics = outcome.slam.statistics()
     processed = outcome.tally.seen
     shown = outcome.view.report() if outcome.view else None

@@ -5,23 +5,26 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.cli import measures
 from vsgraphs.cli.atlas_files import AtlasFiles
+from vsgraphs.cli.ending import attempt, end_work, leave_results
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.pacing import AsFastAsPossible, Realtime
 from vsgraphs.cli.progress import Progress
-from vsgraphs.cli.results import MarkerOutcome, RunOutcome, write_results
+from vsgraphs.cli.result_folder import ResultFolder
+from vsgraphs.cli.results import MarkerOutcome, RunOutcome, expected_files
 from vsgraphs.cli.session import Session, Tally
 from vsgraphs.cli.settings import Value, apply_assignments, apply_file, apply_shortcuts
 from vsgraphs.cli.summary import summarise
+from vsgraphs.cli.terminal import that_may_go
 from vsgraphs.cli.viewing import RunView, Showing
 from vsgraphs.datasets import RecordedSequence, open_sequence
-from vsgraphs.datasets.prefetch import Prefetcher
+from vsgraphs.datasets.prefetch import DEFAULT_LIMIT_S, Prefetcher
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import prepare_directory
 
@@ -29,10 +32,9 @@ if TYPE_CHECKING:
     from vsgraphs.markers import KeyframeMarkers, MarkerDetector, MarkerRegistry
     from vsgraphs.segment import KeyframeSegmentation, RecordedSegmentations, Segmenter
 
-# How long keyframes that still wait for the segmenter may take once all frames are tracked.
-_DRAIN_LIMIT_S = 10.0
-
-
+_INTERRUPTED = (
+    "interrupted: results so far are kept and written; Ctrl-C again skips those still to be written"
+)
 MAP_COLOURS = ("image", "class")
 
 
@@ -54,10 +56,16 @@ class RunRequest:
     save_atlas: Path | None = None
     load_atlas: Path | None = None
     autosave_s: float | None = None
+    frame_timeout_s: float = DEFAULT_LIMIT_S
 
 
 def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
+    with that_may_go():
+        return _run_sequence(request)
+
+
+def _run_sequence(request: RunRequest) -> int:
     sequence = open_sequence(request.source, request.camera)
     _check_map_colours(request)
     segmenter = _make_segmenter(request.segmenter)
@@ -68,39 +76,48 @@ def run_sequence(request: RunRequest) -> int:
     view = RunView(request.showing)
     frames = sequence.frames[: request.max_frames]
     _announce(sequence)
-    with Prefetcher(frames) as loaded:  # the first images decode while the core is loaded
+    # The first images decode while the core is loaded.
+    with Prefetcher(frames, limit_s=request.frame_timeout_s) as loaded:
         from vsgraphs.compiled import core
 
         config = make_config(core(), request)
         slam = atlas.start(core(), config, sequence.camera)
-        with Interrupt() as interrupt:
-            progress = Progress(len(frames))
+        progress = Progress(len(frames))
+        mode = config.get("system.mode")
+        folder = ResultFolder(request.out, expected_files(mode, atlas.save_to), progress.event)
+        with Interrupt(folder.last_words) as interrupt:
+            interrupt.at_first(loaded.stop, slam.stop, partial(progress.event, _INTERRUPTED))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
-            stamps = [frame.timestamp for frame in frames]
             markers = _markers_beside_tracking(slam, sought, config)
             segmentation = _beside_tracking(markers or slam, segmenter, config, progress)
-            mode = config.get("system.mode")
             tracker = view.watch(
                 segmentation or markers or slam, slam, sequence.calibration, mode, progress.event
             )
+            stamps = [frame.timestamp for frame in frames]
             session = Session(tracker, loaded, stamps, progress, pacing, interrupt.requested)
             began = time.monotonic()
             with atlas.saved_meanwhile(slam, progress.event):
-                failure = _attempt(session.run)
+                failure = attempt(session.run)
             loaded.close()
-            progress.clear()
-            failure = _end(slam, segmentation, markers, session, interrupt, failure)
+            progress.doing("ending the work under way")
+            failure = end_work(slam, segmentation, markers, interrupt, failure)
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
             outcome.segmentation, outcome.view, outcome.warnings = segmentation, view, atlas.warnings
             outcome.markers = _marker_outcome(request, sought, markers)
-            report, failure = _leave(outcome, atlas, failure)
+            report, failure = leave_results(outcome, folder, atlas, failure, progress)
+    _raise_where_in_vain(request, session.tally, report, failure)
+    print(summarise(report, folder.folder))
+    view.linger(folder.folder)
+    return interrupt.exit_code
+
+
+def _raise_where_in_vain(
+    request: RunRequest, tally: Tally, report: dict[str, Any], failure: Exception | None
+) -> None:
     if failure is not None:
         raise failure
-    if not report["tracked"] and not session.tally.interrupted:
-        raise InputError(nothing_tracked(request.source, session.tally))
-    print(summarise(report, request.out))
-    view.linger(request.out)
-    return interrupt.exit_code
+    if not report["tracked"] and not tally.interrupted:
+        raise InputError(nothing_tracked(request.source, tally))
 
 
 def _check_map_colours(request: RunRequest) -> None:
@@ -177,72 +194,6 @@ def _repeatable(config: Any) -> bool:
     return config.get("system.execution") == "serial" or bool(config.get("system.replay"))
 
 
-def _drain(
-    segmentation: KeyframeSegmentation | None,
-    markers: KeyframeMarkers | None,
-    limit_s: float,
-    stop: Callable[[], bool],
-) -> None:
-    """What waits for a segmenter and for the search for markers; a keyframe's search takes milliseconds."""
-    try:
-        if segmentation is not None:
-            _drain_segmentation(segmentation, limit_s, stop)
-    finally:
-        if markers is not None:
-            markers.finish(limit_s)
-
-
-def _drain_segmentation(segmentation: KeyframeSegmentation, limit_s: float, stop: Callable[[], bool]) -> None:
-    waiting = segmentation.waiting
-    if waiting and limit_s:
-        print(
-            f"segmenting the last {waiting} keyframes, at most {limit_s:.0f} s", file=sys.stderr, flush=True
-        )
-    deadline = time.monotonic() + limit_s
-    while segmentation.waiting and time.monotonic() < deadline and not stop():
-        time.sleep(0.02)  # in slices, so that Ctrl-C is answered
-    segmentation.finish(0.0)
-
-
-def _attempt(step: Callable[[], object]) -> Exception | None:
-    """Does a step; hands back its error, as what was tracked before is worth keeping."""
-    try:
-        step()
-    except Exception as error:
-        return error
-    return None
-
-
-def _end(
-    slam: Any,
-    segmentation: KeyframeSegmentation | None,
-    markers: KeyframeMarkers | None,
-    session: Session,
-    interrupt: Interrupt,
-    failure: Exception | None,
-) -> Exception | None:
-    """Has the work under way ended; the first trouble is the one to tell."""
-    if session.tally.interrupted:
-        print("interrupted: finishing, results so far are kept", file=sys.stderr, flush=True)
-    stopped = session.tally.interrupted or failure is not None
-    limit_s = 0.0 if stopped else _DRAIN_LIMIT_S
-    draining = _attempt(lambda: _drain(segmentation, markers, limit_s, interrupt.requested))
-    return failure or draining or _attempt(slam.finish)
-
-
-def _leave(
-    outcome: RunOutcome, atlas: AtlasFiles, failure: Exception | None
-) -> tuple[dict[str, Any], Exception | None]:
-    """Writes results and atlas, the one even where the other cannot be: run.json's content, first trouble."""
-    if outcome.view is not None:
-        outcome.view.close()  # what came of it is written too
-    report: dict[str, Any] = {}
-    for step in (lambda: report.update(write_results(outcome)), lambda: atlas.save(outcome.slam)):
-        trouble = _attempt(step)
-        failure = failure or trouble
-    return report, failure
-
-
 def make_config(core: Any, request: RunRequest) -> Any:
     """The core's Config: defaults, then the file, then --set, then the options of their own."""
     config = core.Config()
@@ -255,7 +206,7 @@ def make_config(core: Any, request: RunRequest) -> Any:
 
 def nothing_tracked(source: Path, tally: Tally) -> str:
     """Why a run ended without a single pose, in one line."""
-    unusable = tally.skipped["damaged"] + tally.skipped["refused"]
+    unusable = tally.skipped["damaged"] + tally.skipped["stalled"] + tally.skipped["refused"]
     if tally.seen and unusable == tally.seen:
         first = tally.warnings[0].removeprefix("skipped: ") if tally.warnings else "unknown"
         return f"none of the {tally.seen} frames of {source} can be used; the first: {first}"
@@ -272,7 +223,6 @@ def _outcome(
     first = tally.first_tracked_at
     whole = request.max_frames is None and not tally.interrupted
     return RunOutcome(
-        request.out,
         sequence,
         config,
         slam,

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 from vsgraphs.cli.pacing import AsFastAsPossible, Pacing
+from vsgraphs.errors import StalledError
 
 if TYPE_CHECKING:
     from vsgraphs.datasets.prefetch import LoadedFrame
@@ -35,7 +36,8 @@ class Tally:
 
     seen: int = 0  # handed out by the sequence, in whatever state
     tracked: int = 0
-    skipped: Counter[str] = field(default_factory=Counter)  # reason -> frames: damaged, dropped, refused
+    # reason -> frames: damaged, stalled (did not come in time), dropped, refused
+    skipped: Counter[str] = field(default_factory=Counter)
     warnings: list[str] = field(default_factory=list)
     first_tracked_at: float | None = None  # time.monotonic
     decode_spans: list[tuple[int, int, int]] = field(default_factory=list)  # begin us, duration us, frame
@@ -47,7 +49,7 @@ class Session:
 
     slam: a `vsgraphs.Slam` or anything with its `track`. A frame that cannot be read or that the tracker
     refuses is skipped and counted. What is lost and found again is told to the listener and kept as a
-    warning.
+    warning. Once `stop` says so no frame is begun; one that the tracker then hands back untracked was not.
     """
 
     def __init__(
@@ -74,40 +76,45 @@ class Session:
         tally = self.tally
         for frame in self._frames:
             if self._stop():
-                tally.interrupted = True
                 break
             following = self._stamps[frame.index + 1] if frame.index + 1 < len(self._stamps) else None
             admitted = self._pacing.admit(frame.timestamp, following)
             if self._stop():
-                tally.interrupted = True
                 break
             tally.seen += 1
             tally.decode_spans.append(
                 (int(frame.begin_s * 1e6), int((frame.end_s - frame.begin_s) * 1e6), frame.index)
             )
             if frame.error is not None:
-                self._skip("damaged", str(frame.error))
+                reason = "stalled" if isinstance(frame.error, StalledError) else "damaged"
+                self._skip(reason, str(frame.error))
             elif not admitted:
                 self._skip("dropped", None)
-            else:
-                self._track(frame)
+            elif not self._track(frame):
+                tally.seen -= 1
+                break
             self._listener.frame(tally, self._status)
+        tally.interrupted = self._stop() and tally.seen < len(self._stamps)
         dropped = tally.skipped["dropped"]
         if dropped:
             tally.warnings.append(f"{dropped} frames came while an earlier one was tracked, dropped")
         return tally
 
-    def _track(self, frame: LoadedFrame) -> None:
+    def _track(self, frame: LoadedFrame) -> bool:
+        """False if the tracker passed the frame over, as it was told to stop."""
         try:
             result = self._slam.track(frame.rgb, frame.depth, frame.timestamp)
         except ValueError as error:  # the core's InputError: this frame cannot be used
             self._skip("refused", f"frame {frame.index} at {frame.timestamp:.6f} s: {error}")
-            return
+            return True
         if result.tracked:
             self.tally.tracked += 1
             if self.tally.first_tracked_at is None:
                 self.tally.first_tracked_at = time.monotonic()
+        elif self._stop():
+            return False
         self._follow(str(result.status), frame)
+        return True
 
     def _follow(self, status: str, frame: LoadedFrame) -> None:
         """Tells when tracking is lost and found."""

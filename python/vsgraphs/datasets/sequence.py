@@ -45,6 +45,11 @@ class FrameRef:
     size: tuple[int, int]  # width, height the camera promises, pixels
     colour_grid: ColourGrid | None = None
 
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All that `load` reads."""
+        return self.rgb_path, self.depth_path
+
     def load(self) -> tuple[Rgb, Depth]:
         """Decodes rgb (H, W, 3) uint8 and depth (H, W) uint16 raw units; FrameError if either is unusable."""
         from vsgraphs.datasets.decode import load_depth, load_rgb, load_rgb_on_grid

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from vsgraphs.errors import InputError
 
+_unfinished: set[Path] = set()
+
 
 def write_atomically(path: Path, content: str | bytes) -> None:
     """Writes beside `path` and renames. Raises InputError (no space, no permission); an old file then
@@ -15,6 +17,7 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    _unfinished.add(beside)
     try:
         with beside.open("wb") as file:
             file.write(data)
@@ -25,6 +28,15 @@ def write_atomically(path: Path, content: str | bytes) -> None:
         with contextlib.suppress(OSError):
             beside.unlink()
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+    finally:
+        _unfinished.discard(beside)
+
+
+def remove_unfinished() -> None:
+    """For a process that ends while it writes: takes away what would stay of new files. Old ones stay."""
+    for beside in list(_unfinished):
+        with contextlib.suppress(OSError):
+            beside.unlink()
 
 
 def prepare_directory(path: Path) -> None:

@@ -15,6 +15,8 @@ import numpy.typing as npt
 from vsgraphs.trajectory import Array
 
 CELL_M = 0.1
+_DIRECTIONS = 16  # in which the outermost points are sought
+_ON_THE_EDGE_M2 = 5e-7  # half of what a square millimetre's coordinates can differ by
 
 
 @dataclass(eq=False)
@@ -41,11 +43,11 @@ class PlaneExtent:
 
     def cells(self) -> npt.NDArray[np.int64]:
         """(C, 2) occupied cells u, v, row by row."""
-        rows = [
-            np.stack([np.arange(first, last + 1), np.full(last - first + 1, v)], axis=1)
-            for v, first, last in self.runs
-        ]
-        return np.concatenate(rows) if rows else np.zeros((0, 2), np.int64)
+        v, first, last = self.runs.T
+        lengths = last - first + 1
+        before = np.cumsum(lengths) - lengths  # cells of earlier runs
+        u = np.arange(lengths.sum()) + np.repeat(first - before, lengths)
+        return np.stack([u, np.repeat(v, lengths)], axis=1)
 
     def cell_centres(self) -> Array:
         """(C, 3) middles of the occupied cells, on the plane."""
@@ -73,7 +75,7 @@ def extent_of(points: Array, normal: Array, offset_m: float, up: Array | None) -
     if len(points):
         uv = extent.flat(points)
         extent.polygon = extent.lift(convex_hull(uv))
-        extent.runs = _runs(np.unique(np.floor(uv / CELL_M).astype(np.int64), axis=0))
+        extent.runs = _runs(np.floor(uv / CELL_M).astype(np.int64))
     return extent
 
 
@@ -97,13 +99,31 @@ def convex_hull(uv: Array) -> Array:
     """(N, 2) -> (H, 2) corners of the convex hull, counter-clockwise from the least, to a millimetre; points
     on edges go.
     """
-    points = np.unique(np.round(uv, 3), axis=0)  # in order of u, then v
+    points = np.unique(_near_the_rim(np.round(uv, 3)), axis=0)  # in order of u, then v
     first = np.concatenate([[True], np.diff(points[:, 0]) > 0])
     ends: Array = points[first | np.roll(first, -1)]  # between the lowest and highest of a u no corner lies
     if len(ends) < 3:
         return ends
     corners = [(float(u), float(v)) for u, v in ends]
     return np.array(_half_hull(corners)[:-1] + _half_hull(corners[::-1])[:-1])
+
+
+def _near_the_rim(points: Array) -> Array:
+    """The points without those that lie inside the polygon of the outermost ones in some directions, and so
+    are no corners of the hull (Akl and Toussaint, "A fast convex hull algorithm", IPL 1978): most of them.
+    """
+    angles = np.arange(_DIRECTIONS) * (2 * np.pi / _DIRECTIONS)
+    outermost = np.argmax(np.stack([np.cos(angles), np.sin(angles)], axis=1) @ points.T, axis=1)
+    corners = points[outermost]
+    along = (
+        np.roll(corners, -1, axis=0) - corners
+    )  # counter-clockwise, of no length where one is outermost twice
+    keep = np.zeros(len(points), dtype=bool)
+    for (u0, v0), (du, dv) in zip(corners, along, strict=True):
+        if du or dv:
+            keep |= du * (points[:, 1] - v0) - dv * (points[:, 0] - u0) < _ON_THE_EDGE_M2
+    rim: Array = points[keep | ~np.any(along)]
+    return rim
 
 
 def _half_hull(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -119,7 +139,7 @@ def _half_hull(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def _runs(cells: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Occupied cells -> runs, after closing (dilating, then eroding by one cell)."""
+    """Occupied cells, in any order and many times -> runs, after closing (dilating, then eroding by one)."""
     least = cells.min(axis=0) - 2
     grid = np.zeros(cells.max(axis=0) - least + 3, dtype=bool)
     grid[tuple((cells - least).T)] = True

@@ -21,6 +21,7 @@ from PIL import Image
 
 from vsgraphs.datasets.lists import read_list, stamp_of
 from vsgraphs.errors import FrameError, InputError
+from vsgraphs.regular_file import IrregularFileError, open_regular
 from vsgraphs.segment.fields import Fields, read_object
 from vsgraphs.segment.roles import RoleTable, SurfaceRole, role_named, role_of_class
 from vsgraphs.segment.segmentation import Segmentation
@@ -94,11 +95,13 @@ def _role_table(folder: Path) -> RoleTable:
 
 def _load(path: Path) -> npt.NDArray[np.uint16]:
     try:
-        with Image.open(path, formats=("PNG",)) as image:
+        with open_regular(path) as file, Image.open(file, formats=("PNG",)) as image:
             image.load()
             mode, values = image.mode, np.asarray(image)
     except FileNotFoundError:
         raise FrameError(f"{path} is missing") from None
+    except IrregularFileError as error:
+        raise FrameError(f"{path}: {error.strerror}") from None
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise FrameError(f"{path} is damaged: {reason}") from None

@@ -12,12 +12,17 @@ from vsgraphs.errors import InputError
 MARK = "scene_gt.json"  # written last: a folder that has it is one of ours, and whole
 
 
+def part_of(final: Path) -> Path:
+    """Where this process makes the folder."""
+    return final.with_name(f".{final.name}.{os.getpid()}.part")
+
+
 class FolderInTheMaking:
     """A folder under construction beside its final place; renamed when whole, removed otherwise."""
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
         self._final = final
-        self.path = final.with_name(f".{final.name}.{os.getpid()}.part")
+        self.path = part_of(final)
         if final.exists() and not final.is_dir():
             raise InputError(f"output {final} is a file; give a directory")
         if final.is_dir() and any(final.iterdir()) and not (overwrite and (final / MARK).is_file()):
