@@ -207,15 +207,15 @@ void Slam::add_what_the_end_tells(RunStatistics& s) const {
   const FrameRecords::View records = records_.view();
   s.elsewhere = s.tracked - static_cast<std::int64_t>(poses_in(*map_given_out(records), records).size());
   s.stages = stage_statistics(executor_->spans());
-  const int dropped = executor_->content().counts.dropped_maps;
-  if (dropped > 0)
-    s.warnings.push_back(std::to_string(dropped) + " map(s) of fewer than " +
+  const AtlasCounts counts = executor_->content().counts;
+  if (counts.dropped_maps > 0)
+    s.warnings.push_back(std::to_string(counts.dropped_maps) + " map(s) of fewer than " +
                          std::to_string(config_.system.min_map_keyframes) +
                          " keyframes were dropped when a new one began");
   if (executor_->backlog() > 0)
     s.warnings.push_back(std::to_string(executor_->backlog()) +
                          " keyframes waited for mapping when the run was stopped; the map lacks them");
-  if (content.counts.unadjusted)
+  if (counts.unadjusted)
     s.warnings.push_back("the run was stopped before the whole map was adjusted to its last loop");
   if (s.elsewhere > 0)
     s.warnings.push_back(std::to_string(s.elsewhere) +

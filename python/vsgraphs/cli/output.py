@@ -59,13 +59,14 @@ def _safe(name: str) -> str:
 
 
 def holds_a_trajectory(out: Path) -> bool:
-    """Whether an earlier run that tracked something left its results there; what cannot be read may be one."""
+    """Whether an earlier run that tracked something left its results; True where it cannot be known."""
     try:
-        return json.loads((out / "run.json").read_bytes()).get("tracked", 1) > 0
+        tracked: int = json.loads((out / "run.json").read_bytes())["tracked"]
     except FileNotFoundError:
         return False
-    except (OSError, ValueError, AttributeError, TypeError):
+    except (OSError, ValueError, LookupError, TypeError):
         return True
+    return tracked != 0
 
 
 def remove_earlier(out: Path, written: Collection[str]) -> None:
