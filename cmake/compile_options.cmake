@@ -24,6 +24,10 @@ if(NOT VSGRAPHS_CPU MATCHES "v3|v4|native")
   # Without AVX the compiler warns of how it hands on 32-byte vectors; ours (core/vision/simd.h) stay in one file.
   target_compile_options(vsgraphs_options INTERFACE -Wno-psabi)
 endif()
+# Where defects are hunted, a part that fails must not be switched off in silence.
+if(VSGRAPHS_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+  target_compile_definitions(vsgraphs_options INTERFACE VSGRAPHS_STOP_ON_FAULT)
+endif()
 if(VSGRAPHS_SANITIZE)
   target_compile_options(vsgraphs_options INTERFACE
     -fsanitize=${VSGRAPHS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all

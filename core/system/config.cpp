@@ -188,6 +188,14 @@ std::vector<OptionDescription> Config::describe_all() const {
   return now.found;
 }
 
+bool stops_on_fault_by_default() {
+#ifdef VSGRAPHS_STOP_ON_FAULT
+  return true;
+#else
+  return false;
+#endif
+}
+
 void Config::validate() const {
   // Fields are public: what was not set through set() is held to the same ranges.
   Config checked;

@@ -17,6 +17,9 @@
 
 namespace vsgraphs {
 
+// True in debug and sanitizer builds.
+bool stops_on_fault_by_default();
+
 struct SystemOptions {
   std::string mode = "full";
   std::string execution = "threaded";
@@ -28,6 +31,7 @@ struct SystemOptions {
   bool builds_scene() const { return mode != "slam"; }
   bool builds_structure() const { return mode == "full"; }
   double max_lag_s = 0.05;
+  bool stop_on_fault = stops_on_fault_by_default();
   std::string schedule_out;
   std::string replay;
 };
@@ -51,6 +55,9 @@ void describe(SystemOptions& o, Visitor& field) {
   field("max_lag_s", o.max_lag_s, 0.0, 10.0,
         "unless realtime: time of the sequence by which mapping may lag behind tracking, which waits for it "
         "then");
+  field("stop_on_fault", o.stop_on_fault,
+        "a fault of the program in planes, rooms, markers, loops or adjusting the whole map ends the run; "
+        "otherwise that part is switched off with a warning, and tracking goes on");
   field("schedule_out", o.schedule_out, AllowedValues{},
         "file to record a run's schedule in, to replay it exactly");
   field("replay", o.replay, AllowedValues{}, "recorded schedule to follow, edit by edit");

@@ -7,8 +7,15 @@
 
 namespace vsgraphs {
 
+namespace {
+
+constexpr char adjustment_name[] = "adjustment of the whole map";
+
+}  // namespace
+
 MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known)
     : options_(config.system),
+      guard_(config.system.stop_on_fault),
       snapshot_(map_.snapshot()),
       mapper_(config.mapper, camera, config.orb.pyramid(), config.factors),
       scene_(config.scene, camera),
@@ -66,21 +73,24 @@ void MapOwner::insert(const KeyframeRequest& request) {
 
 void MapOwner::find_planes() {
   scene_spans_.set_frame(newest_frame_);
-  const MapEdit edit = [&] {
+  MapEdit edit;
+  const bool found = guard_.run("planes", [&] {
     const Span span(&scene_spans_, "find_planes");
-    return scene_.propose(newest_, snapshot_, nullptr, &scene_spans_);
-  }();
-  apply(edit, {EditEvent::Kind::planes, newest_frame_, 0, 0});
+    edit = scene_.propose(newest_, snapshot_, nullptr, &scene_spans_);
+  });
+  if (found) apply(edit, {EditEvent::Kind::planes, newest_frame_, 0, 0});
 }
 
 bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
   const KeyframeId labelled = map_.keyframe_of_frame(frame_index);
   if (!labelled.valid()) return false;
   scene_spans_.set_frame(frame_index);
-  const MapEdit edit = [&] {
+  MapEdit edit;
+  const bool found = guard_.run("planes", [&] {
     const Span span(&scene_spans_, "label_planes");
-    return scene_.propose(labelled, snapshot_, &labels, &scene_spans_);
-  }();
+    edit = scene_.propose(labelled, snapshot_, &labels, &scene_spans_);
+  });
+  if (!found) return false;
   apply(edit, {EditEvent::Kind::labels, frame_index, 0, 0});
   return true;
 }
@@ -89,10 +99,12 @@ bool MapOwner::mark(std::int64_t frame_index, const MarkerDetections& detections
   const KeyframeId seeing = map_.keyframe_of_frame(frame_index);
   if (!seeing.valid()) return false;
   scene_spans_.set_frame(frame_index);
-  const MapEdit edit = [&] {
+  MapEdit edit;
+  const bool placed = guard_.run("markers", [&] {
     const Span span(&scene_spans_, "place_markers");
-    return place_markers(seeing, detections, snapshot_);
-  }();
+    edit = place_markers(seeing, detections, snapshot_);
+  });
+  if (!placed) return false;
   apply(edit, {EditEvent::Kind::markers, frame_index, 0, 0});
   return true;
 }
@@ -101,10 +113,12 @@ void MapOwner::look_for_loop() {
   loop_.reset();
   if (!options_.loop_closing || !map_.keyframes().contains(newest_)) return;
   const Span span(&spans_, "look_for_loop");
-  LoopReport report;
-  if (auto edit = loop_closer_.close(newest_, snapshot_, places_, report, &spans_))
-    loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
-  tally(tallies_.loops, report, *snapshot_);
+  guard_.run("loops", [&] {
+    LoopReport report;
+    if (auto edit = loop_closer_.close(newest_, snapshot_, places_, report, &spans_))
+      loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
+    tally(tallies_.loops, report, *snapshot_);
+  });
 }
 
 void MapOwner::tally(LoopTally& kind, const LoopReport& report, const Map& there) {
@@ -123,6 +137,7 @@ void MapOwner::close_loop() {
 
 // One that is under way, and still true, is let come to its end: where loop follows loop none ever would.
 void MapOwner::adjust_from_here() {
+  if (guard_.is_off(adjustment_name)) return;
   adjust_again_ = adjustment_ != nullptr;
   if (adjust_again_) return;
   adjustment_ = std::make_shared<FullAdjustment>(snapshot_, model_);
@@ -136,16 +151,30 @@ void MapOwner::drop_adjustment() {
 }
 
 void MapOwner::adjust_here(const std::function<bool()>& stop) {
-  while (adjustment_ && !(stop && stop()) && run_adjustment(stop)) finish_adjustment();
+  while (adjustment_ && !(stop && stop())) {
+    bool ended = false;
+    const bool held = adjust_guarded([&] { ended = run_adjustment(stop); });
+    if (held && !ended) return;
+    if (held) finish_adjustment();
+  }
+}
+
+bool MapOwner::adjust_guarded(const std::function<void()>& work) {
+  if (guard_.run(adjustment_name, work)) return true;
+  drop_adjustment();
+  publish();
+  return false;
 }
 
 void MapOwner::take_in_adjustment() {
   VSG_INVARIANT(adjustment_ != nullptr);
   const std::shared_ptr<FullAdjustment> done = std::exchange(adjustment_, nullptr);
-  const MapEdit edit = [&] {
+  MapEdit edit;
+  const bool rebased = adjust_guarded([&] {
     const Span span(&spans_, "rebase_adjustment");
-    return rebase(done->edit(), done->base(), *snapshot_);
-  }();
+    edit = rebase(done->edit(), done->base(), *snapshot_);
+  });
+  if (!rebased) return;
   apply(edit, {EditEvent::Kind::adjust, newest_frame_, done->iterations(), 0});
   if (adjust_again_) adjust_from_here();
 }
@@ -160,10 +189,12 @@ void MapOwner::finish_adjustment() {
 
 void MapOwner::find_rooms(bool last) {
   scene_spans_.set_frame(newest_frame_);
-  const MapEdit edit = [&] {
+  MapEdit edit;
+  const bool found = guard_.run("rooms", [&] {
     const Span span(&scene_spans_, "find_structure");
-    return structure_.propose(snapshot_, newest_s_, last, &scene_spans_);
-  }();
+    edit = structure_.propose(snapshot_, newest_s_, last, &scene_spans_);
+  });
+  if (!found) return;
   apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
 }
 
@@ -186,7 +217,7 @@ void MapOwner::publish() {
   if (follow(*snapshot_, places_) || !published_places_)
     published_places_ = std::make_shared<const PlaceIndex>(places_);
   cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_), published_places_,
-                 published_dormant_, counts_, published_tallies_});
+                 published_dormant_, counts_, published_tallies_, guard_.warnings()});
 }
 
 }  // namespace vsgraphs

@@ -17,6 +17,7 @@
 #include "core/system/schedule.h"
 #include "core/system/snapshot_cell.h"
 #include "core/system/span_recorder.h"
+#include "core/system/stage_guard.h"
 
 namespace vsgraphs {
 
@@ -56,6 +57,8 @@ class MapOwner {
   // Runs and finishes what is to be adjusted, here, until nothing is or `stop` says so.
   void adjust_here(const std::function<bool()>& stop = {});
   void take_in_adjustment();
+  // Has `work` do what the adjustment is to go on with. Where it throws there is no adjustment any more, now and later: false.
+  bool adjust_guarded(const std::function<void()>& work);
   // With the rooms of the adjusted map.
   void finish_adjustment();
   // The part of insert() that makes the request's map the one worked on. False if it is already.
@@ -63,7 +66,7 @@ class MapOwner {
   // The part of end_run() that does the same with the map this run made most of.
   bool settle();
   // Whether it is time to seek rooms again; `last`: at the end of the run.
-  bool rooms_due() const { return structure_.due(newest_s_); }
+  bool rooms_due() const { return !guard_.is_off("rooms") && structure_.due(newest_s_); }
   void find_rooms(bool last);
   // False, and nothing done, if the frame is no keyframe (any more) of the map worked on.
   bool label(std::int64_t frame_index, const LabelGrid& labels);
@@ -108,6 +111,7 @@ class MapOwner {
   void drop_adjustment();
 
   SystemOptions options_;
+  StageGuard guard_;
   Map map_;
   Snapshot snapshot_;
   LocalMapper mapper_;

@@ -127,11 +127,13 @@ void MapOwner::look_for_join() {
   join_.reset();
   if (!options_.loop_closing || !map_.keyframes().contains(newest_)) return;
   for (std::size_t i = 0; i < dormant_.size() && !join_; ++i) {
-    const MapState& other = dormant_[i].state;
-    LoopReport report;
-    auto join = loop_closer_.join(newest_, snapshot_, {other.map, other.places}, report, &spans_);
-    tally(tallies_.joins, report, *other.map);
-    if (join) join_ = FoundJoin{i, std::move(*join)};
+    guard_.run("loops", [&] {
+      const MapState& other = dormant_[i].state;
+      LoopReport report;
+      auto join = loop_closer_.join(newest_, snapshot_, {other.map, other.places}, report, &spans_);
+      tally(tallies_.joins, report, *other.map);
+      if (join) join_ = FoundJoin{i, std::move(*join)};
+    });
   }
 }
 
@@ -145,12 +147,15 @@ void MapOwner::join_maps() {
   const bool onto_other = found.join.onto_other;
   const Map& younger = onto_other ? *snapshot_ : *other.state.map;
   if (options_.builds_scene()) {
-    scene_.recall(*snapshot_);
-    scene_.recall(*other.state.map);
-    scene_.move(younger, found.join.older_from_younger);
-    for (const EditOperation& operation : found.join.edit.operations) {
-      if (const auto* merge = std::get_if<MergePlane>(&operation)) scene_.note_merge(merge->id, merge->into);
-    }
+    guard_.run("planes", [&] {
+      scene_.recall(*snapshot_);
+      scene_.recall(*other.state.map);
+      scene_.move(younger, found.join.older_from_younger);
+      for (const EditOperation& operation : found.join.edit.operations) {
+        if (const auto* merge = std::get_if<MergePlane>(&operation))
+          scene_.note_merge(merge->id, merge->into);
+      }
+    });
   }
   const std::shared_ptr<const FreeSpace> younger_space = onto_other ? free_space() : other.state.free_space;
   if (onto_other) {
@@ -164,7 +169,8 @@ void MapOwner::join_maps() {
   ++counts_.merges;
   publish_dormant();
   apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0});
-  if (options_.builds_structure() && younger_space) structure_.absorb(map_, *younger_space);
+  if (options_.builds_structure() && younger_space)
+    guard_.run("rooms", [&] { structure_.absorb(map_, *younger_space); });
   adjust_from_here();
 }
 

@@ -86,6 +86,37 @@ TEST_F(MapOwnerTest, RefiningStopsWhenToldAndSaysHowFarItCame) {
   EXPECT_EQ(owner_.edits().back().iterations, 0);
 }
 
+// Labels of another size than the image's samples are a defect that planes cannot survive.
+TEST_F(MapOwnerTest, WhatFailsIsSwitchedOffAndMappingGoesOn) {
+  Config config;
+  config.system.stop_on_fault = false;
+  SnapshotCell cell;
+  MapOwner owner(config, camera_, cell);
+  KeyframeRequest first = request(0, 0);
+  auto surface = std::make_shared<DepthGrid>();
+  surface->columns = surface->rows = 4;
+  surface->samples.resize(16);
+  first.surface = surface;
+  owner.insert(first);
+  LabelGrid broken;
+  broken.samples.resize(3);
+  EXPECT_FALSE(owner.label(0, broken));
+  ASSERT_EQ(cell.take().faults->size(), 0U) << "told with the next version";
+  owner.find_planes();
+  owner.refine({});
+  ASSERT_EQ(cell.take().faults->size(), 1U);
+  EXPECT_EQ(cell.take().faults->front().rfind("planes failed", 0), 0U) << cell.take().faults->front();
+  for (const EditEvent& event : owner.edits()) EXPECT_NE(event.kind, EditEvent::Kind::planes);
+  owner.insert(request(9, 0.2));
+  EXPECT_EQ(cell.take().snapshot->keyframes().size(), 2U);
+
+  config.system.stop_on_fault = true;
+  SnapshotCell other_cell;
+  MapOwner strict(config, camera_, other_cell);
+  strict.insert(first);
+  EXPECT_THROW(strict.label(0, broken), std::exception);
+}
+
 TEST_F(MapOwnerTest, WhoWaitsIsWokenByTheInsertOrByTheEnd) {
   std::atomic<int> woken = 0;
   std::thread first([&] { cell_.wait_for_inserted(1), ++woken; });

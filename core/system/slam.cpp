@@ -199,6 +199,7 @@ RunStatistics Slam::statistics() const {
     const std::lock_guard lock(warnings_mutex_);
     s.warnings = warnings_;
   }
+  s.warnings.insert(s.warnings.end(), content.faults->begin(), content.faults->end());
   if (ended_) add_what_the_end_tells(s);
   return s;
 }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "core/stages/loop_tally.h"
 #include "core/system/atlas_state.h"
@@ -34,7 +36,8 @@ class SnapshotCell {
     // The other maps, oldest first; never null once something was published.
     std::shared_ptr<const std::vector<MapState>> dormant;
     AtlasCounts counts;
-    std::shared_ptr<const LoopTallies> tallies;  // null until a place was compared
+    std::shared_ptr<const LoopTallies> tallies;              // null until a place was compared
+    std::shared_ptr<const std::vector<std::string>> faults;  // a line per part that was switched off
   };
   void publish(Content content);
   Content take() const;

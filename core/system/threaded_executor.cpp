@@ -110,7 +110,10 @@ class ThreadedExecutor : public Executor {
   }
 
   void adjust_beside() {
-    if (background_.has_finished(owner_.adjustment())) owner_.finish_adjustment();
+    bool finished = false;
+    if (const auto wanted = owner_.adjustment())
+      owner_.adjust_guarded([&] { finished = background_.has_finished(wanted); });
+    if (finished) owner_.finish_adjustment();
     background_.work_on(owner_.adjustment(), owner_.newest_frame());
   }
 
