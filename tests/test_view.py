@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import socket
 import threading
 import time
-from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -21,7 +19,6 @@ from vsgraphs.datasets import Calibration
 from vsgraphs.errors import InputError
 from vsgraphs.lens import depth_metres, distort
 from vsgraphs.scene_graph import SceneGraph, format_scene_graph
-from vsgraphs.view import ports, sinks
 from vsgraphs.view.camera import back_project, landmarks_in_view, pixel_rays
 from vsgraphs.view.layers import MAX_LINKED_KEYFRAMES, layered_graph, wall_heading
 from vsgraphs.view.layout import gaze_at
@@ -155,40 +152,6 @@ def test_float_depth_is_in_metres_already() -> None:
 # --- what goes wrong
 
 
-@pytest.fixture
-def listener() -> Iterator[tuple[int, list[bytes]]]:
-    """A server that answers nothing a viewer would."""
-    server = socket.create_server(("", 0))
-    heard: list[bytes] = []
-
-    def serve() -> None:
-        while True:
-            try:
-                link, _ = server.accept()
-            except OSError:
-                return
-            with link:
-                heard.append(link.recv(64))
-                link.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
-
-    threading.Thread(target=serve, daemon=True).start()
-    yield server.getsockname()[1], heard
-    server.close()
-
-
-def test_ports(listener: tuple[int, list[bytes]]) -> None:
-    port, _ = listener
-    assert not ports.is_free(port)
-    assert ports.listens(port)
-    assert not ports.speaks_http2(port)
-    with pytest.raises(
-        InputError, match=rf"port {port} \(data\) is taken .* choose another with --view-port"
-    ):
-        ports.require_free(port, "data", "--view-port")
-    with pytest.raises(InputError, match="--view-port 70000: a port is a number from 1 to 65535"):
-        ports.require_free(70000, "data", "--view-port")
-
-
 def test_without_the_extra_one_line_names_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(__import__("sys").modules, "rerun", None)
     for showing in (Showing(view=True), Showing(web=True), Showing(record=tmp_path / "a.rrd")):
@@ -268,17 +231,18 @@ def test_the_newest_frame_wins_and_offering_never_waits(
     from vsgraphs.view import live
 
     seen: list[float] = []
-    gate = threading.Event()
+    begun, gate = threading.Event(), threading.Event()
 
     def slow(self: Any, shot: Any) -> None:
-        gate.wait(5)
+        begun.set()
+        gate.wait(60)
         seen.append(shot.timestamp_s)
 
     monkeypatch.setattr(live.LiveView, "_show", slow)
     view = live_view(tmp_path / "run.rrd", [])
     image = np.zeros((48, 64, 3), np.uint8)
     view.offer(image, image[..., 0], 0.0, Posed())
-    time.sleep(0.1)  # the thread now waits at the gate with frame 0
+    assert begun.wait(60)  # the thread now waits at the gate with frame 0
     for index in range(1, 100):
         view.offer(image, image[..., 0], float(index), Posed())
     gate.set()
@@ -309,29 +273,6 @@ def test_a_viewer_that_fails_costs_one_line(tmp_path: Path, monkeypatch: pytest.
     assert view.report()["shown"] == 0
 
 
-def test_a_closed_window_is_let_go(listener: tuple[int, list[bytes]]) -> None:
-    class Stream:
-        logged = 0
-        gone = False
-
-        def log(self, *_: Any, **__: Any) -> None:
-            self.logged += 1
-
-        def disconnect(self) -> None:
-            self.gone = True
-
-    window, file, told = Stream(), Stream(), []
-    open_on = sinks.Sinks([file, window], window, listener[0], tell=told.append)
-    open_on.check_window()
-    assert told == []
-    closed = sinks.Sinks([file, window], window, 1, tell=told.append)  # nobody listens on port 1
-    closed.check_window()
-    closed.check_window()
-    closed.log("a", None)
-    assert told == closed.troubles == ["the viewer was closed; the run goes on without it"]
-    assert (window.gone, window.logged, file.logged) == (True, 0, 1)
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [("a.txt", "expected a name ending in .rrd"), ("missing/a.rrd", "missing is not a directory")],
@@ -340,35 +281,6 @@ def test_record_where_nothing_can_be_written(tmp_path: Path, name: str, message:
     rerun_or_skip()
     with pytest.raises(InputError, match=message):
         RunView(Showing(record=tmp_path / name))
-
-
-def test_a_page_is_served_where_there_is_no_display(monkeypatch: pytest.MonkeyPatch) -> None:
-    rerun_or_skip()
-    from vsgraphs.view import SinkRequest, open_sinks
-
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-        monkeypatch.delenv(name, raising=False)
-    port = next(p for p in range(21000, 30000, 2) if ports.is_free(p) and ports.is_free(p + 1))
-    told: list[str] = []
-    opened = open_sinks(SinkRequest(view=True, port=port), told.append)
-    expected = f"http://127.0.0.1:{port + 1}/?url=rerun%2Bhttp://127.0.0.1:{port}/proxy"
-    assert told == [f"open {expected} in a browser (there is no display here)"]
-    assert ports.listens(port + 1)
-    assert ports.speaks_http2(port)
-    with pytest.raises(InputError, match=f"port {port} .*is taken"):
-        open_sinks(SinkRequest(view=True, port=port), told.append)
-    opened.close()
-
-
-def test_port_taken_ends_before_anything_opens(
-    listener: tuple[int, list[bytes]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    rerun_or_skip()
-    with pytest.raises(InputError, match="taken by another program"):
-        RunView(Showing(web=True, port=listener[0]))
-    monkeypatch.setenv("DISPLAY", ":0")  # a window would open; what listens there is no viewer
-    with pytest.raises(InputError, match="taken by another program"):
-        RunView(Showing(view=True, port=listener[0]))
 
 
 def test_a_finished_run_is_shown_from_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,6 +21,7 @@ app = typer.Typer(
 
 
 _VIEW_PORT = "The viewer's port (9876 unless given); a page for browsers is one above."
+_VIEW_ADDRESS = "Listen at this IP address (127.0.0.1 unless given: only this machine can look); no password."
 
 
 def _print_version(wanted: bool) -> None:
@@ -119,6 +120,7 @@ def run(
     ] = None,
     web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
     view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+    view_address: Annotated[str | None, typer.Option(metavar="IP", help=_VIEW_ADDRESS)] = None,
     save_atlas: Annotated[
         Path | None, typer.Option(help="Save all maps in this file at the end, Ctrl-C included.")
     ] = None,
@@ -177,7 +179,7 @@ def run(
             autosave_s=autosave,
             frame_timeout_s=frame_timeout,
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
-            showing=Showing(view, record, view_port, web),
+            showing=Showing(view, record, view_port, web, view_address),
         )
         code = run_sequence(request)
     raise typer.Exit(code)
@@ -240,12 +242,13 @@ def view(
         Path | None, typer.Option(help="Write what is shown to this .rrd file; no window opens.")
     ] = None,
     view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+    view_address: Annotated[str | None, typer.Option(metavar="IP", help=_VIEW_ADDRESS)] = None,
 ) -> None:
     """Open a finished run: map, walls, rooms and the graph above them."""
     with told():
         from vsgraphs.cli.viewing import Showing, view_run
 
-        view_run(run, Showing(record is None, record, view_port, web))
+        view_run(run, Showing(record is None, record, view_port, web, view_address))
 
 
 @app.command(epilog=examples.SIMULATE)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from vsgraphs.datasets import Calibration
     from vsgraphs.view import LiveView, SinkRequest, Sinks
 
+_ARRIVE_S = 60.0  # a finished run, in the viewer: nothing else waits
+
 
 @dataclass(frozen=True)
 class Showing:
@@ -24,6 +26,7 @@ class Showing:
     record: Path | None = None
     port: int | None = None
     web: bool = False
+    address: str | None = None
 
     @property
     def wanted(self) -> bool:
@@ -32,10 +35,11 @@ class Showing:
 
     def request(self) -> SinkRequest:
         """For `vsgraphs.view.open_sinks`."""
-        from vsgraphs.view import DEFAULT_PORT, SinkRequest
+        from vsgraphs.view import DEFAULT_ADDRESS, DEFAULT_PORT, SinkRequest
 
         port = DEFAULT_PORT if self.port is None else self.port
-        return SinkRequest(self.view or self.web, self.record, port, self.web)
+        address = DEFAULT_ADDRESS if self.address is None else self.address
+        return SinkRequest(self.view or self.web, self.record, port, self.web, address)
 
 
 class RunView:
@@ -72,13 +76,13 @@ class RunView:
 
     def linger(self, out: Path) -> None:
         """A page for browsers lives as long as this program: waits for Ctrl-C where somebody can press it."""
-        page = self._sinks.page if self._sinks is not None else None
-        if page is None:
+        if self._sinks is None or self._sinks.page is None:
             return
         if sys.stdin.isatty():
-            wait_with_page(page)
+            wait_with_page(self._sinks)
         else:
             print(f"the viewer's page ends with this program; `vsgraphs view {out} --web` opens the result")
+        self._sinks.end()
 
     def report(self) -> dict[str, Any] | None:
         """For run.json; None without a view."""
@@ -91,12 +95,14 @@ class RunView:
         return kept + (self._live.warnings if self._live is not None else [])
 
 
-def wait_with_page(page: str) -> None:
-    """Until Ctrl-C."""
-    print(f"the viewer stays open at {page} until Ctrl-C", flush=True)
+def wait_with_page(sinks: Sinks) -> None:
+    """Until Ctrl-C, or until the server has ended."""
+    print(f"the viewer stays open at {sinks.page} until Ctrl-C", flush=True)
     with Interrupt() as interrupt:
-        while not interrupt.requested():
+        while not interrupt.requested() and sinks.page is not None:
             time.sleep(0.1)
+    if sinks.page is None:
+        print("warning: the viewer's server has ended", file=sys.stderr, flush=True)
 
 
 def view_run(folder: Path, showing: Showing) -> None:
@@ -106,8 +112,9 @@ def view_run(folder: Path, showing: Showing) -> None:
     check_run(folder)  # before a window opens
     sinks = open_sinks(showing.request(), lambda line: print(line, flush=True))
     show_run(folder, sinks)
-    sinks.close()
+    sinks.close(_ARRIVE_S)
     if sinks.record is not None:
         print(f"recorded in {sinks.record}")
     if sinks.page is not None:
-        wait_with_page(sinks.page)
+        wait_with_page(sinks)
+    sinks.end()

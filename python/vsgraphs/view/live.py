@@ -7,40 +7,23 @@ takes at most a quarter of one core from the run.
 
 from __future__ import annotations
 
+import atexit
 import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from vsgraphs.datasets import Calibration
-from vsgraphs.export.class_colours import plane_of_points
-from vsgraphs.scene_graph import SceneGraph, transform_points
-from vsgraphs.trajectory import Array
-from vsgraphs.view.frames import FrameLogger, MapView
-from vsgraphs.view.layout import gaze_at, layout
-from vsgraphs.view.scene import log_constants, log_landmarks, log_path, log_scene
+from vsgraphs.view.extra import rerun
+from vsgraphs.view.picture import REST, Picture, Shot
 from vsgraphs.view.sinks import Sinks
-from vsgraphs.view.surfaces import upright
 
-_REST = 3.0  # times the work
 _LOOK_S = 0.02  # at least between two looks for a new frame
-_SCENE_S = 1.0  # at least between two looks at the whole map
+_END_S = 30.0  # what a run waits for its view at most
 _HAND_OVER_S = 0.0005  # a thread that waits for the interpreter gets it this soon (Python's default is 5 ms)
-
-
-@dataclass(frozen=True)
-class _Shot:
-    rgb: npt.NDArray[np.uint8]
-    depth: npt.NDArray[np.generic]
-    timestamp_s: float
-    map_from_camera: Array | None
 
 
 class LiveView:
@@ -58,27 +41,22 @@ class LiveView:
         with_planes: bool,
         tell: Callable[[str], None],
     ) -> None:
-        self._slam = slam
+        self._picture = Picture(slam, camera, sinks, with_planes=with_planes)
         self._sinks = sinks
-        self._with_planes = with_planes
         self._tell = tell
-        self._camera = camera
         # No lock and no signal: those would make the tracker wait for this thread now and then.
-        self._waiting: deque[_Shot] = deque(maxlen=1)
+        self._waiting: deque[Shot] = deque(maxlen=1)
         self._closing = threading.Event()
         self._failed = False
-        self._tail: list[tuple[float, Array]] = []
-        self._map = MapView(np.zeros((0, 3)), np.zeros(0, np.int64), None, upright(SceneGraph()))
-        self._map_from: Any = None
-        self._next_scene_s = 0.0
-        self._up_from_graph = np.eye(4)
         self.offered = self.shown = 0
         self.offer_s = 0.0
         self.warnings: list[str] = []
         self._hand_over_s = sys.getswitchinterval()
         sys.setswitchinterval(_HAND_OVER_S)
         self._thread = threading.Thread(target=self._work, name="view", daemon=True)
+        self._ending = threading.Thread(target=self._end, name="view-end", daemon=True)
         self._thread.start()
+        atexit.register(self._at_exit)
 
     def watch(self, tracker: Any) -> _Watched:
         """Something with the tracker's `track` that shows what it tracks."""
@@ -89,17 +67,19 @@ class LiveView:
         began = time.perf_counter()
         self.offered += 1
         if not self._failed:
-            self._waiting.append(_Shot(rgb, depth, timestamp_s, result.world_from_camera))
+            self._waiting.append(Shot(rgb, depth, timestamp_s, result.world_from_camera))
         self.offer_s += time.perf_counter() - began
 
     def close(self) -> None:
-        """After the run: shows the finished map, waits until it has arrived. Never raises."""
-        self._closing.set()
-        self._thread.join()
+        """After the run: shows the finished map, waits until it has arrived; not for ever. Never raises."""
+        if self._ending.ident is None:
+            self._ending.start()
+        self._ending.join(_END_S)
         sys.setswitchinterval(self._hand_over_s)
-        if not self._failed:
-            self._guarded(self._show_result)
-        self._guarded(self._sinks.close)
+        atexit.unregister(self._at_exit)
+        if self._ending.is_alive():
+            self._fail("the viewer does not end, the run goes on without it")
+            rerun().unregister_shutdown()  # which would wait for the same
 
     def report(self) -> dict[str, Any]:
         """For run.json."""
@@ -107,14 +87,14 @@ class LiveView:
         return {"shown": self.shown, "dropped": self.offered - self.shown, "mean_offer_ms": round(mean, 4)}
 
     def _work(self) -> None:
-        self._guarded(self._begin)
+        self._guarded(self._picture.begin)
         while True:
             began = time.monotonic()
             if self._waiting:
                 self._guarded(partial(self._show, self._waiting.pop()))
                 self.shown += not self._failed
-            rest = max(_LOOK_S, _REST * (time.monotonic() - began))
-            if self._failed or self._closing.wait(timeout=rest):
+            rest = max(_LOOK_S, REST * (time.monotonic() - began))
+            if self._failed or not self._sinks.streams or self._closing.wait(timeout=rest):
                 return
 
     def _guarded(self, step: Callable[[], object]) -> None:
@@ -122,68 +102,35 @@ class LiveView:
         try:
             step()
         except Exception as error:
-            if not self._failed:
-                line = f"the viewer failed, the run goes on without it: {type(error).__name__}: {error}"
-                self.warnings.append(" ".join(line.split())[:300])
-                self._tell(f"warning: {self.warnings[-1]}")
-            self._failed = True
+            self._fail(f"the viewer failed, the run goes on without it: {type(error).__name__}: {error}")
 
-    def _begin(self) -> None:
-        self._sinks.arrange(layout())
-        log_constants(self._sinks)
-        self._frames = FrameLogger(self._sinks, self._camera)
+    def _fail(self, line: str) -> None:
+        if not self._failed:
+            self.warnings.append(" ".join(line.split())[:300])
+            self._tell(f"warning: {self.warnings[-1]}")
+        self._failed = True
 
-    def _show(self, shot: _Shot) -> None:
-        self._sinks.at(shot.timestamp_s)
-        now = time.monotonic()
-        if now >= self._next_scene_s:
-            self._sinks.check_window()
-            self._refresh()
-            self._next_scene_s = time.monotonic() + max(_SCENE_S, 4 * _REST * (time.monotonic() - now))
-        if shot.map_from_camera is not None:
-            self._tail.append((shot.timestamp_s, shot.map_from_camera[:3, 3]))
-        self._frames.log(shot.rgb, shot.depth, shot.map_from_camera, self._map)
-        self._log_path(shot.timestamp_s)
+    def _halt(self) -> None:
+        self._closing.set()
+        self._sinks.hurry()
+        self._thread.join(_END_S)
 
-    def _refresh(self) -> None:
-        """Looks at the newest map: landmarks, planes, rooms."""
-        snapshot = self._slam.snapshot()
-        if self._map_from is not None and snapshot.version == self._map_from.version:
-            return
-        self._map_from = snapshot
-        points, colours = snapshot.landmarks()
-        graph, up_from_map = SceneGraph(), upright(SceneGraph())
-        if self._with_planes:
-            graph = SceneGraph.from_map(snapshot.scene_graph(), snapshot.keyframes())
-            self._up_from_graph = upright(graph)
-            up_from_map = self._up_from_graph @ graph.frame.world_from_map
-            log_scene(self._sinks, graph, self._up_from_graph)
-        owners = plane_of_points(graph, graph.points_from_map(points)) if self._with_planes else None
-        self._map = MapView(
-            points,
-            np.full(len(points), -1) if owners is None else owners,
-            graph if self._with_planes else None,
-            up_from_map,
-        )
-        log_landmarks(self._sinks, transform_points(up_from_map, points), colours)
+    def _at_exit(self) -> None:
+        """A thread that is within Rerun when Python ends would abort the program."""
+        self._halt()
+        if self._ending.is_alive():
+            self._ending.join(_END_S)
 
-    def _log_path(self, until_s: float) -> None:
-        """Keyframes as corrected, then the frames since the last one as they were tracked."""
-        if self._map_from is None:
-            return
-        _, stamps, poses = self._map_from.keyframes()
-        self._tail = [(s, p) for s, p in self._tail if (not len(stamps) or s > stamps[-1]) and s <= until_s]
-        places = [*poses[:, :3, 3], *(p for _, p in self._tail)]
-        log_path(self._sinks, transform_points(self._map.up_from_map, np.array(places).reshape(-1, 3)))
+    def _end(self) -> None:
+        self._halt()
+        if self._thread.is_alive():
+            return  # two at once would disturb each other
+        if not self._failed and self._sinks.streams:
+            self._guarded(self._picture.show_result)
+        self._guarded(self._sinks.close)
 
-    def _show_result(self) -> None:
-        self._map_from = None
-        self._refresh()
-        stamps, poses = self._slam.trajectory()
-        if len(stamps):
-            log_path(self._sinks, transform_points(self._map.up_from_map, poses[:, :3, 3]))
-        if self._sinks.window is None:  # a window's owner may have turned the view by hand
-            self._sinks.arrange(layout(gaze_at(self._map.graph or SceneGraph(), self._up_from_graph)))
+    def _show(self, shot: Shot) -> None:
+        self._picture.show(shot)
 
 
 class _Watched:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
+import atexit
 import os
-import signal
-import subprocess
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,13 +13,13 @@ from typing import Any
 from vsgraphs.errors import InputError
 from vsgraphs.view import ports
 from vsgraphs.view.extra import rerun
+from vsgraphs.view.link import Link, short
+from vsgraphs.view.server import Server, who_can_look
+from vsgraphs.view.window import open_window
 
 APPLICATION = "vsgraphs"
 DEFAULT_PORT = 9876
-_SERVER_MEMORY = "1GiB"  # of what a browser that comes late still gets; the oldest goes first
-_FLUSH_S = 3.0
-_START_S = 20.0
-_SETTLE_S = 0.5
+_FLUSH_S = 5.0  # a run's results wait no longer for a viewer
 
 
 @dataclass(frozen=True)
@@ -33,23 +30,35 @@ class SinkRequest:
     record: Path | None = None
     port: int = DEFAULT_PORT  # of the viewer's window or of the data; the browser's page is one above
     web: bool = False
+    address: str = ports.LOOPBACK  # where the viewer listens
 
 
 @dataclass
 class Sinks:
-    """One or more recordings of the same. Not for use by several threads at once.
+    """A recording, a viewer, or both, of the same. Not for use by several threads at once.
 
-    window_port: where a viewer's window listens; None: none is open. page: the address for browsers.
+    window: whether the viewer is a window, not a page for browsers.
     """
 
-    streams: list[Any] = field(default_factory=list)
-    window: Any = None
-    window_port: int | None = None
-    page: str | None = None
+    recording: Any = None
+    viewer: Link | None = None
+    window: bool = False
+    server: Server | None = None
     record: Path | None = None
     tell: Callable[[str], None] = lambda _: None
     troubles: list[str] = field(default_factory=list)  # what was told and is worth keeping
     _announced: dict[str, set[str]] = field(default_factory=dict)
+
+    @property
+    def streams(self) -> list[Any]:
+        """Those that still take something; the recording first."""
+        viewer = self.viewer if self.viewer is not None and self.viewer.lost is None else None
+        return [stream for stream in (self.recording, viewer) if stream is not None]
+
+    @property
+    def page(self) -> str | None:
+        """The address for browsers on this machine, while it is served."""
+        return self.server.page if self.server is not None and self.server.alive() else None
 
     def log(self, path: str, shown: Any, *, static: bool = False) -> None:
         """Logs one thing everywhere."""
@@ -72,30 +81,38 @@ class Sinks:
         for stream in self.streams:
             stream.send_blueprint(layout, make_active=True, make_default=True)
 
-    def check_window(self) -> None:
-        """Lets go of a viewer's window that was closed; what else is open goes on."""
-        if self.window is None or self.window_port is None or ports.listens(self.window_port):
-            return
-        self.streams.remove(self.window)
-        with contextlib.suppress(Exception):  # whatever it still holds has nowhere to go
-            self.window.disconnect()
-        self.window = self.window_port = None
-        self._trouble("the viewer was closed; the run goes on without it")
-
-    def _trouble(self, line: str) -> None:
+    def trouble(self, line: str) -> None:
+        """Tells and keeps a warning."""
         self.troubles.append(line)
-        self.tell(line)
+        self.tell(f"warning: {line}")
 
-    def close(self) -> None:
-        """Waits a few seconds until all that was logged has arrived."""
-        self.check_window()
-        for stream in self.streams:
+    def hurry(self) -> None:
+        """A viewer that does not read is given up sooner from now on."""
+        if self.viewer is not None:
+            self.viewer.hurry()
+
+    def close(self, limit_s: float = _FLUSH_S) -> None:
+        """Waits until all that was logged has arrived, at most that long. The page for browsers stays."""
+        if self.recording is not None:
             try:
-                stream.flush(timeout_sec=_FLUSH_S)
+                self.recording.flush(timeout_sec=limit_s)
             except Exception as error:
-                self._trouble(f"the viewer did not take everything: {' '.join(str(error).split())[:120]}")
-            if stream is not self.window and self.page is None:
-                stream.disconnect()
+                self.trouble(f"the recording is not whole: {short(error)}")
+            self.recording.disconnect()
+        if self.viewer is not None:
+            self.viewer.flush(limit_s)
+
+    def end(self) -> None:
+        """Ends the page for browsers; a window stays. Afterwards Rerun has nobody to wait for at exit."""
+        atexit.unregister(self.end)
+        if self.viewer is not None and self.server is not None:
+            self.viewer.cut()
+        elif self.viewer is not None:
+            self.hurry()
+            self.viewer.flush(_FLUSH_S)
+            self.viewer.leave()
+        if self.server is not None:
+            self.server.end()
 
 
 def has_display() -> bool:
@@ -104,25 +121,21 @@ def has_display() -> bool:
 
 
 def open_sinks(request: SinkRequest, tell: Callable[[str], None]) -> Sinks:
-    """Opens what was asked for. Raises InputError: extra missing, port taken, file not writable, no window.
+    """Opens what was asked for.
 
+    Raises InputError: extra missing, port taken, file not writable, no window, not this machine's address.
     Without a display the data is served for a browser instead, and its address told.
     """
+    if request.view:
+        ports.require_address(request.address)
     _quiet()
     rr = rerun()
     sinks = Sinks(tell=tell)
     if request.record is not None:
         sinks.record = request.record
-        sinks.streams.append(_recording(rr, request.record))
+        sinks.recording = _recording(rr, request.record)
     if request.view:
-        stream = rr.RecordingStream(APPLICATION, send_properties=False)
-        if request.web or not has_display():
-            sinks.page = _serve(rr, stream, request)
-            tell(f"open {sinks.page} in a browser{'' if request.web else ' (there is no display here)'}")
-        else:
-            _open_window(stream, request.port, tell)
-            sinks.window, sinks.window_port = stream, request.port
-        sinks.streams.append(stream)
+        _open_viewer(rr, sinks, request)
     return sinks
 
 
@@ -143,58 +156,28 @@ def _recording(rr: Any, path: Path) -> Any:
     try:
         stream.save(path)
     except Exception as error:
-        raise InputError(f"--record {path}: cannot write ({_short(error)})") from None
+        raise InputError(f"--record {path}: cannot write ({short(error)})") from None
     return stream
 
 
-def _serve(rr: Any, stream: Any, request: SinkRequest) -> str:
-    ports.require_free(request.port, "the viewer's data", "--view-port")
-    ports.require_free(request.port + 1, "the viewer's page", "--view-port")
-    try:
-        url = stream.serve_grpc(grpc_port=request.port, server_memory_limit=_SERVER_MEMORY)
-        rr.serve_web_viewer(web_port=request.port + 1, open_browser=False)
-    except Exception as error:
-        raise InputError(f"cannot serve the viewer on port {request.port}: {_short(error)}") from None
-    return page_address(request.port + 1, url)
+def _open_viewer(rr: Any, sinks: Sinks, request: SinkRequest) -> None:
+    where = (request.address, request.port)
+    if request.web or not has_display():
+        server = sinks.server = Server(*where)
+        data = server.data
+    else:
+        server, sinks.window = None, True
+        data = open_window(*where, sinks.tell)
+    stream = rr.RecordingStream(APPLICATION, send_properties=False)
+    stream.connect_grpc(data)
 
+    def gone() -> str | None:
+        if server is not None:
+            return None if server.alive() else "the viewer's server has ended"
+        return None if ports.listens(request.port, request.address) else "the viewer was closed"
 
-def page_address(page_port: int, data_url: str) -> str:
-    """The address of the web viewer that shows the data served at `data_url`."""
-    return f"http://127.0.0.1:{page_port}/?url={data_url.replace('+', '%2B')}"
-
-
-def _open_window(stream: Any, port: int, tell: Callable[[str], None]) -> None:
-    if not ports.is_free(port):
-        if not ports.speaks_http2(port):
-            ports.require_free(port, "the viewer's data", "--view-port")
-        tell(f"showing in the viewer that is already open on port {port}")
-        stream.connect_grpc(_address(port))
-        return
-    ports.require_free(port, "the viewer's data", "--view-port")
-    viewer = subprocess.Popen(  # lives on after the run, and says nothing on our terminal
-        [sys.executable, "-m", "rerun", "--port", str(port), "--hide-welcome-screen"],
-        env={**os.environ, "RERUN_APP_ONLY": "true"},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    deadline = time.monotonic() + _START_S
-    while not ports.listens(port) and viewer.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.1)
-    time.sleep(_SETTLE_S)  # without a usable display it listens for a moment, then ends
-    if viewer.poll() is not None or not ports.listens(port):
-        with contextlib.suppress(OSError):
-            os.killpg(viewer.pid, signal.SIGTERM)  # its own group: the program behind it too
-        raise InputError(
-            "the viewer's window does not open (is the display usable?); --web shows it in a browser"
-        )
-    stream.connect_grpc(_address(port))
-
-
-def _address(port: int) -> str:
-    return f"rerun+http://127.0.0.1:{port}/proxy"
-
-
-def _short(error: Exception) -> str:
-    return " ".join(str(error).split())[:160]
+    sinks.viewer = Link(stream, *where, gone, sinks.trouble)
+    atexit.register(sinks.end)  # called before what Rerun has registered, which waits without a limit
+    if server is not None:
+        sinks.tell(f"open {server.page} in a browser{'' if request.web else ' (there is no display here)'}")
+        who_can_look(*where, sinks.tell)
