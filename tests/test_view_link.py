@@ -151,7 +151,10 @@ def test_a_viewer_that_does_not_read_is_given_up(quick: None) -> None:
         port = asleep.getsockname()[1]
         stream = Stream(socket.create_connection((HERE, port)))
         viewer = Link(stream, HERE, port, lambda: None, told.append)
-        viewer.log("a", None)  # would never end
+        logging = threading.Thread(target=viewer.log, args=("a", None), daemon=True)  # would never end
+        logging.start()
+        logging.join(30)
+        assert not logging.is_alive()
     assert told == ["the viewer does not read; going on without it"]
     assert viewer.lost == "the viewer does not read"
     viewer.log("b", None)
