@@ -12,7 +12,6 @@ namespace {
 
 std::string prefix(std::uint32_t number) { return "map" + std::to_string(number); }
 
-// Where an older version of the format would have to be understood, this is the place: `archive.version()` says it.
 MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
   MapState state;
   state.map = std::make_shared<const Map>(load_map(archive, name));
@@ -31,6 +30,17 @@ MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
   return state;
 }
 
+// Which file it goes back to. Files of before format 2 say nothing of that: each begins a line of its own.
+void read_lineage(const ArchiveReader& archive, SavedAtlas& atlas) {
+  const std::uint64_t revision = atlas.revision = archive.identity();
+  AtlasVersion& parent = atlas.parent;
+  if (archive.version() < 2)
+    parent = {revision, revision};  // saved again, it is another file
+  else
+    archive.read("lineage", parent.lineage, parent.revision);
+  atlas.state.loaded = {parent.lineage != 0 ? parent.lineage : revision, revision};
+}
+
 }  // namespace
 
 void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
@@ -38,6 +48,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
   archive.add("origin", atlas.program, atlas.commit);
   archive.add("camera", atlas.camera);
   archive.add("configuration", atlas.configuration);
+  archive.add("lineage", atlas.parent.lineage, atlas.parent.revision);
   archive.add("maps", static_cast<std::uint32_t>(atlas.state.maps.size()), atlas.map_names);
   std::uint32_t number = 0;
   for (const MapState& state : atlas.state.maps) {
@@ -52,6 +63,7 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   ArchiveReader archive(name, bytes, atlas_kind);
   SavedAtlas atlas;
   atlas.format = archive.version();
+  read_lineage(archive, atlas);
   archive.read("origin", atlas.program, atlas.commit);
   archive.read("camera", atlas.camera);
   archive.read("configuration", atlas.configuration);
@@ -69,10 +81,28 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   return atlas;
 }
 
-void save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas) {
+std::uint64_t save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas, int keep) {
+  std::error_code ignored;
+  require_input(!is_empty(atlas.state) || !std::filesystem::exists(path, ignored),
+                "cannot write " + path.string() + ": a map without keyframes does not replace a file");
   ArchiveWriter archive(atlas_kind);
   write_atlas(archive, atlas);
-  write_file_atomically(path, archive.finish());
+  const auto parts = archive.finish();
+  write_file_atomically(path, parts, keep);
+  return archive_identity(parts.front());
+}
+
+std::optional<std::uint64_t> atlas_revision(const std::filesystem::path& path) {
+  try {
+    const FileContent beginning = read_file(path, identity_bytes);
+    const auto bytes = beginning.bytes();
+    if (bytes.size() < identity_bytes ||
+        std::memcmp(bytes.data(), atlas_kind.magic.data(), atlas_kind.magic.size()) != 0)
+      return std::nullopt;
+    return archive_identity(bytes);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 SavedAtlas load_atlas(const std::filesystem::path& path) {

@@ -99,6 +99,7 @@ class Slam {
   Config config_;
   Camera camera_;
   std::unique_ptr<Executor> executor_;
+  AtlasVersion loaded_;
   std::vector<FrameRecord> records_;
   std::vector<std::string> warnings_;
   std::int64_t frames_ = 0;
