@@ -5,6 +5,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/check.h"
 #include "core/map/map_archive.h"
+#include "core/system/atlas_checks.h"
 
 namespace vsgraphs {
 
@@ -15,8 +16,6 @@ std::string prefix(std::uint32_t number) { return "map" + std::to_string(number)
 MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
   MapState state;
   state.map = std::make_shared<const Map>(load_map(archive, name));
-  if (state.map->keyframes().index_bound() > PlaceSegment::most_keyframes)
-    archive.damaged("it numbers more keyframes than there can be");
   if (archive.has(name + "/places")) {
     auto places = std::make_shared<PlaceIndex>();
     archive.read(name + "/places", *places);
@@ -27,6 +26,7 @@ MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
     archive.read(name + "/free_space", *free_space);
     state.free_space = std::move(free_space);
   }
+  if (Wrong wrong = wrong_with_map_state(state)) archive.damaged(wrong);
   return state;
 }
 
@@ -74,10 +74,9 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   }
   std::uint32_t maps = 0;
   archive.read("maps", maps, atlas.map_names);
-  if (!atlas.map_names.empty() && atlas.map_names.size() != maps)
-    archive.damaged("maps and names differ in number");
   load_shared_constants(archive);
   for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i)));
+  if (Wrong wrong = wrong_with_atlas(atlas)) archive.damaged(wrong);
   return atlas;
 }
 
