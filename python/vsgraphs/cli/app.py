@@ -132,6 +132,16 @@ def run(
             help="Save this often meanwhile too, in --save-atlas or atlas.vsg in --out.",
         ),
     ] = None,
+    overwrite: Annotated[
+        bool,
+        typer.Option("--overwrite", help="Let --save-atlas replace a file that the run does not start from."),
+    ] = False,
+    keep: Annotated[
+        int,
+        typer.Option(
+            min=0, help="Versions of the atlas from before the run to keep: FILE.1 (the last), FILE.2, ..."
+        ),
+    ] = 1,
 ) -> None:
     """Track a camera through a recorded sequence and build the map."""
     with told():
@@ -160,6 +170,8 @@ def run(
             save_atlas=save_atlas,
             load_atlas=load_atlas,
             autosave_s=autosave,
+            overwrite=overwrite,
+            keep=keep,
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
             showing=Showing(view, record, view_port, web),
         )
