@@ -5,6 +5,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstdio>
+
 #include "bindings/bind.h"
 #include "build_info.h"
 #include "core/base/atomic_file.h"
@@ -27,7 +29,33 @@ SavedAtlas atlas_of(const AtlasState& state, const Config& config, const Camera&
           configuration_text(config),
           nb::cast<std::string>(nb::module_::import_("vsgraphs.version").attr("version")()),
           VSGRAPHS_COMMIT,
-          std::move(map_names)};
+          std::move(map_names),
+          atlas_kind.version,
+          state.loaded};
+}
+
+// Sixteen digits; none for none.
+nb::object name_of(std::uint64_t revision) {
+  if (revision == 0) return nb::none();
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(revision));
+  return nb::str(digits);
+}
+
+// A file of format 1 stands for its own past (read_lineage): nothing is known of it.
+nb::object parent_of(const SavedAtlas& atlas) {
+  const bool known = atlas.parent.revision != atlas.revision;
+  return known ? name_of(atlas.parent.revision) : nb::none();
+}
+
+nb::object save(const SavedAtlas& atlas, const std::filesystem::path& path, int keep) {
+  if (keep < 0) throw nb::value_error("keep must not be negative");
+  std::uint64_t revision = 0;
+  {
+    const nb::gil_scoped_release others_go_on;
+    revision = save_atlas(path, atlas, keep);
+  }
+  return name_of(revision);
 }
 
 const MapState& map_of(const SavedAtlas& atlas, std::int64_t number) {
@@ -90,6 +118,9 @@ nb::dict info_of(const SavedAtlas& atlas) {
   info["format"] = atlas.format;
   info["program"] = atlas.program;
   info["commit"] = atlas.commit;
+  info["revision"] = name_of(atlas.revision);
+  info["lineage"] = name_of(atlas.state.loaded.lineage);
+  info["parent"] = parent_of(atlas);
   info["mode"] = configured(atlas.configuration, "system.mode");
   info["camera"] = camera;
   info["maps"] = atlas.state.maps.size();
@@ -116,14 +147,19 @@ void bind_atlas(nb::module_& m) {
           "  config, camera: those of the run.\n"
           "  map_names: one per map, or none.\n\n"
           "Raises InputError for names that are not one per map.")
-      .def(
-          "save", [](const SavedAtlas& atlas, const std::filesystem::path& path) { save_atlas(path, atlas); },
-          "path"_a, nb::call_guard<nb::gil_scoped_release>(),
-          "Writes the file as a whole or not at all: an old file stays until the new one is complete. Raises "
-          "InputError\n"
-          "naming the file and the cause.")
+      .def("save", &save, "path"_a, "keep"_a = 0,
+           nb::sig("def save(self, path: str | os.PathLike, keep: int = 0) -> str"),
+           "Writes the file as a whole or not at all: an old file stays until the new one is complete, and a "
+           "symbolic link is\n"
+           "followed. Returns the revision of what was written.\n\n"
+           "Args:\n"
+           "  path: the file.\n"
+           "  keep: so many previous versions stay beside it, as PATH.1 (the last one), PATH.2, ...\n\n"
+           "Raises InputError naming the file and the cause; also where maps without keyframes would "
+           "replace a file.")
       .def("info", &info_of, nb::sig("def info(self) -> dict[str, typing.Any]"),
-           "format, program, commit, mode, camera, maps; keyframes, landmarks, planes, rooms, floors, doors, "
+           "format, program, commit, revision, lineage, parent, mode, camera, maps; keyframes, landmarks, "
+           "planes, rooms, floors, doors, "
            "markers of all maps;\n"
            "each: a list with the same counts and the name per map.")
       .def("snapshot", &snapshot_of, "number"_a = -1,
@@ -142,6 +178,16 @@ void bind_atlas(nb::module_& m) {
       .def_prop_ro(
           "empty", [](const SavedAtlas& atlas) { return is_empty(atlas.state); }, "no map has a keyframe")
       .def_ro("state", &SavedAtlas::state, "what Slam starts from")
+      .def_prop_ro(
+          "revision", [](const SavedAtlas& atlas) { return name_of(atlas.revision); },
+          nb::sig("def revision(self) -> str | None"),
+          "16 digits that name the file it was loaded from by its content; None if it was not")
+      .def_prop_ro(
+          "lineage", [](const SavedAtlas& atlas) { return name_of(atlas.state.loaded.lineage); },
+          nb::sig("def lineage(self) -> str | None"),
+          "the revision of the first file that it goes back to, from run to run; None if it was never in one")
+      .def_prop_ro("parent", &parent_of, nb::sig("def parent(self) -> str | None"),
+                   "the revision of the file which the run that made it started from; None: from nothing")
       .def_ro("camera", &SavedAtlas::camera)
       .def_ro("configuration", &SavedAtlas::configuration,
               "lines \"key: value\", as `vsgraphs run --config` reads them")
@@ -162,6 +208,13 @@ void bind_atlas(nb::module_& m) {
       "Reads a saved atlas. Raises InputError, one line that names the file, where it cannot be read, is no "
       "atlas, is\n"
       "damaged or was saved by a newer version.");
+  m.def(
+      "atlas_revision",
+      [](const std::filesystem::path& path) { return name_of(atlas_revision(path).value_or(0)); }, "path"_a,
+      nb::sig("def atlas_revision(path: str | os.PathLike) -> str | None"),
+      "The revision of the atlas in this file, from its first bytes: the same for the same content. None "
+      "where there is no\n"
+      "atlas. Whether the file is whole, load_atlas() tells.");
   m.def("require_writable", &require_writable, "path"_a,
         "Raises the InputError that saving a file of this name would raise; writes nothing that stays.");
 }

@@ -32,6 +32,22 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     assert [entry.name for entry in tmp_path.iterdir()] == ["a.txt"]
 
 
+def test_a_link_is_followed_and_stays(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    link, real = tmp_path / "link.txt", tmp_path / "elsewhere" / "real.txt"
+    link.symlink_to("elsewhere/real.txt")  # to nothing yet
+    for content in ("made where the link led", "new"):
+        write_atomically(link, content)
+        assert real.read_text() == content
+    assert link.is_symlink()
+    assert [entry.name for entry in real.parent.iterdir()] == ["real.txt"]
+    (tmp_path / "a").symlink_to("b")
+    (tmp_path / "b").symlink_to("a")
+    for path in (tmp_path / "a", Path("/dev/full"), tmp_path):
+        with pytest.raises(InputError, match=f"cannot write {path}: it is no ordinary file"):
+            write_atomically(path, "x")
+
+
 def test_directories(tmp_path: Path) -> None:
     prepare_directory(tmp_path / "a" / "b")
     assert list((tmp_path / "a" / "b").iterdir()) == []

@@ -177,46 +177,53 @@ def test_a_process_that_ends_amid_a_file_leaves_the_old_one(
     assert names_in(tmp_path) == ["a.txt"]
 
 
-class Atlas:
-    """Like AtlasFiles: saves where it can."""
+class Core:
+    """Of the core, what an atlas is saved with."""
 
-    def __init__(self, save_to: Path) -> None:
-        self.save_to: Path = save_to
-        self.warnings: list[str] = []
-        self.saved: list[Path] = []
-
-    def save(self, slam: object) -> None:
-        write_atomically(self.save_to, "atlas")
-        self.saved.append(self.save_to)
+    def atlas_revision(self, path: Path) -> str | None:
+        return path.read_text() if path.exists() else None
 
 
-class Slam(fake_core.Slam):
-    keyframes_made = 3
+class Map:
+    """Like vsgraphs.Atlas."""
 
-    def atlas_state(self) -> fake_core.Slam:
-        self.keyframes = self.keyframes_made  # type: ignore[assignment,method-assign]
-        return self
+    def __init__(self, keyframes: int) -> None:
+        self.empty = keyframes == 0
+
+    def save(self, path: Path, keep: int) -> str:  # noqa: ARG002
+        write_atomically(path, "atlas")
+        return "atlas"
+
+    def info(self) -> dict[str, int]:
+        return {"maps": 1, "keyframes": 3, "landmarks": 4, "rooms": 0}
+
+
+def atlas_files(save_to: Path, keyframes: int = 3) -> AtlasFiles:
+    files = AtlasFiles(target=AtlasTarget(Core(), save_to, 0))
+    files._make = lambda _: Map(keyframes)
+    return files
 
 
 def test_an_atlas_that_cannot_be_saved_is_saved_with_the_results(tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "house.vsg").write_text("another one")
-    atlas, said = Atlas(tmp_path / "gone" / "house.vsg"), []
-    saver = _AtlasSaver(atlas, Slam(), said.append)  # type: ignore[arg-type]
+    atlas, said = atlas_files(tmp_path / "gone" / "house.vsg"), []
+    saver = _AtlasSaver(atlas, fake_core.Slam(), said.append)
     saver.write(out)
-    assert (out / "house-2.vsg").read_text() == "atlas"
+    assert (out / "house-1.vsg").read_text() == "atlas"
     assert (out / "house.vsg").read_text() == "another one"
     assert "the atlas is in" in atlas.warnings[0]
     assert said == [f"warning: {atlas.warnings[0]}"]
     saver.write(tmp_path)  # the results moved: it is safe where it is
-    assert len(atlas.saved) == 1
+    assert atlas.save_to == out / "house-1.vsg"
+    assert not (tmp_path / "house.vsg").exists()
 
 
 def test_an_atlas_within_results_that_moved_moves_too(tmp_path: Path) -> None:
     out, beside = tmp_path / "out", tmp_path / "out-2"
-    atlas = Atlas(out / "house.vsg")
-    saver = _AtlasSaver(atlas, Slam(), print)  # type: ignore[arg-type]
+    atlas = atlas_files(out / "house.vsg")
+    saver = _AtlasSaver(atlas, fake_core.Slam(), print)
     with pytest.raises(InputError):
         saver.write(out)
     beside.mkdir()
@@ -225,8 +232,7 @@ def test_an_atlas_within_results_that_moved_moves_too(tmp_path: Path) -> None:
 
 
 def test_an_empty_map_is_not_worth_another_file(tmp_path: Path) -> None:
-    slam = Slam()
-    slam.keyframes_made = 0
+    saver = _AtlasSaver(atlas_files(tmp_path / "gone" / "a.vsg", keyframes=0), fake_core.Slam(), print)
     with pytest.raises(InputError):
-        _AtlasSaver(Atlas(tmp_path / "gone" / "a.vsg"), slam, print).write(tmp_path)  # type: ignore[arg-type]
+        saver.write(tmp_path)
     assert names_in(tmp_path) == []

@@ -8,7 +8,7 @@ namespace vsgraphs {
 
 namespace {
 
-constexpr std::size_t fixed_header = 24;
+constexpr std::size_t fixed_header = identity_bytes;
 constexpr std::size_t checked_header = 16;  // of it, in front of its checksum
 
 std::uint64_t step(std::uint64_t hash, std::uint64_t word) {
@@ -32,6 +32,10 @@ std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t start) {
   std::uint64_t last = 0;
   if (at < bytes.size()) std::memcpy(&last, bytes.data() + at, bytes.size() - at);
   return step(hash, last);
+}
+
+std::uint64_t archive_identity(std::span<const std::byte> beginning) {
+  return beginning.size() < fixed_header ? 0 : number_at<std::uint64_t>(beginning, checked_header);
 }
 
 Bytes ArchiveWriter::header() const {
@@ -76,10 +80,9 @@ ArchiveReader::ArchiveReader(std::string file, std::span<const std::byte> bytes,
   version_ = number_at<std::uint32_t>(bytes, 8);
   const std::size_t rest = number_at<std::uint32_t>(bytes, 12);
   if (rest > bytes.size() - fixed_header) damaged("it ends too early");
+  identity_ = archive_identity(bytes);
   const auto table = bytes.subspan(fixed_header, rest);
-  if (checksum(table, checksum(bytes.first(checked_header))) !=
-      number_at<std::uint64_t>(bytes, checked_header))
-    damaged("its header has changed");
+  if (checksum(table, checksum(bytes.first(checked_header))) != identity_) damaged("its header has changed");
   require_input(version_ <= kind.version, file_ + ": was saved in version " + std::to_string(version_) +
                                               " of the " + what_ +
                                               " format, and this vsgraphs reads up to version " +

@@ -25,6 +25,11 @@ namespace vsgraphs {
 
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t start = 0xcbf29ce484222325ULL);
 
+// The header's checksum, which hangs on that of every section: the same for the same content, another for any other. Told by the
+// first `identity_bytes` of a file; 0 if there are fewer.
+inline constexpr std::size_t identity_bytes = 24;
+std::uint64_t archive_identity(std::span<const std::byte> beginning);
+
 struct ArchiveKind {
   std::string_view magic;     // 8 characters
   std::uint32_t version = 1;  // the newest this program reads, and the one it writes
@@ -69,6 +74,7 @@ class ArchiveReader {
   ArchiveReader(std::string file, std::span<const std::byte> bytes, const ArchiveKind& kind);
 
   std::uint32_t version() const { return version_; }
+  std::uint64_t identity() const { return identity_; }
   std::vector<std::string> names() const;
   bool has(const std::string& name) const { return sections_.contains(name); }
   std::span<const std::byte> section(const std::string& name) const;
@@ -110,6 +116,7 @@ class ArchiveReader {
   std::string file_;
   std::string what_;
   std::uint32_t version_ = 0;
+  std::uint64_t identity_ = 0;
   std::map<std::string, std::span<const std::byte>> sections_;
   SharedConstants shared_;
 };

@@ -47,17 +47,21 @@ std::filesystem::path part_of(const std::filesystem::path& path) {
   throw InputError("cannot write " + path.string() + ": " + why);
 }
 
-// Opens the part and holds its lock; what an earlier process left of it goes.
-int open_part(const std::filesystem::path& path) {
+std::filesystem::path kept(const std::filesystem::path& path, int number) {
+  return path.string() + "." + std::to_string(number);
+}
+
+// Opens the part and holds its lock; what an earlier process left of it goes. `path` is for messages.
+int open_part(const std::filesystem::path& path, const std::filesystem::path& end) {
   std::error_code ignored;
-  const std::filesystem::path folder = folder_of(path);
+  const std::filesystem::path folder = folder_of(end);
   if (!path.has_filename() || std::filesystem::is_directory(path, ignored))
     cannot_write(path, "it names a folder; give a file");
   if (!std::filesystem::is_directory(folder, ignored))
     cannot_write(path, "there is no folder " + folder.string() + "; make it first");
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     cannot_write(path, "it is no ordinary file; give another name");
-  const int file = ::open(part_of(path).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  const int file = ::open(part_of(end).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (file < 0) cannot_write(path, reason(errno));
   // Where a file system knows no locks there is none to wait for.
   if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
@@ -86,30 +90,77 @@ void sync_folder(const std::filesystem::path& folder) {
   if (opened.ok()) ::fsync(opened.number());
 }
 
+// 0 or the error. Where a file system knows no hard links, or refuses this one.
+int copy_to_disk(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) return error.value();
+  const Descriptor copied(::open(to.c_str(), O_RDONLY | O_CLOEXEC));
+  return copied.ok() && ::fsync(copied.number()) == 0 ? 0 : errno;
+}
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  struct stat one{}, other{};
+  return ::stat(a.c_str(), &one) == 0 && ::lstat(b.c_str(), &other) == 0 && one.st_dev == other.st_dev &&
+         one.st_ino == other.st_ino;
+}
+
+// 0 or the error. What is there gets a second name and keeps its own until the rename that follows: at no moment is there none.
+int keep_previous(const std::filesystem::path& file, int keep) {
+  std::error_code ignored;
+  const std::filesystem::path newest = kept(file, 1), beside = part_of(newest);
+  // The same already: an earlier attempt came this far.
+  if (keep <= 0 || !std::filesystem::exists(file, ignored) || same_file(file, newest)) return 0;
+  ::unlink(beside.c_str());
+  int error = ::link(file.c_str(), beside.c_str()) == 0 ? 0 : copy_to_disk(file, beside);
+  for (int i = keep; error == 0 && i > 1; --i) {
+    if (::rename(kept(file, i - 1).c_str(), kept(file, i).c_str()) != 0 && errno != ENOENT) error = errno;
+  }
+  if (error == 0 && ::rename(beside.c_str(), newest.c_str()) != 0) error = errno;
+  if (error != 0) ::unlink(beside.c_str());
+  return error;
+}
+
 }  // namespace
 
+std::filesystem::path followed(const std::filesystem::path& path) {
+  constexpr int most_links = 40;  // as Linux has it
+  std::filesystem::path end = path;
+  std::error_code error;
+  for (int i = 0; i < most_links; ++i) {
+    if (!std::filesystem::is_symlink(end, error)) return end;
+    const std::filesystem::path next = std::filesystem::read_symlink(end, error);
+    if (error) return end;
+    end = folder_of(end) / next;  // an absolute one replaces it
+  }
+  cannot_write(path, "its symbolic links lead in a circle");
+}
+
 void write_file_atomically(const std::filesystem::path& path,
-                           const std::vector<std::span<const std::byte>>& parts) {
-  const Descriptor file(open_part(path));
+                           const std::vector<std::span<const std::byte>>& parts, int keep) {
+  const std::filesystem::path end = followed(path), part = part_of(end);
+  const Descriptor file(open_part(path, end));
   int error = ::ftruncate(file.number(), 0) == 0 ? 0 : errno;
-  for (const auto& part : parts) {
-    if (error == 0) error = write_all(file.number(), part);
+  for (const auto& bytes : parts) {
+    if (error == 0) error = write_all(file.number(), bytes);
   }
   if (error == 0 && ::fsync(file.number()) != 0) error = errno;
-  if (error == 0 && ::rename(part_of(path).c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(part_of(path).c_str());
-    cannot_write(path, reason(error));
-  }
-  sync_folder(folder_of(path));
+  const int not_kept = error == 0 ? keep_previous(end, keep) : 0;
+  if (error == 0 && not_kept == 0 && ::rename(part.c_str(), end.c_str()) != 0) error = errno;
+  if (error != 0 || not_kept != 0) ::unlink(part.c_str());
+  if (not_kept != 0)
+    cannot_write(path, "what is there cannot be kept as " + kept(end, 1).string() + ": " + reason(not_kept));
+  if (error != 0) cannot_write(path, reason(error));
+  sync_folder(folder_of(end));
 }
 
 void require_writable(const std::filesystem::path& path) {
-  const Descriptor file(open_part(path));
-  ::unlink(part_of(path).c_str());
+  const std::filesystem::path end = followed(path);
+  const Descriptor file(open_part(path, end));
+  ::unlink(part_of(end).c_str());
 }
 
-FileContent read_file(const std::filesystem::path& path) {
+FileContent read_file(const std::filesystem::path& path, std::size_t most) {
   const auto fail = [&path](const std::string& why) {
     throw InputError("cannot read " + path.string() + ": " + why);
   };
@@ -119,7 +170,7 @@ FileContent read_file(const std::filesystem::path& path) {
   if (::fstat(file.number(), &status) != 0) fail(reason(errno));
   if (!S_ISREG(status.st_mode)) fail("it is no ordinary file");
   FileContent content;
-  content.size = static_cast<std::size_t>(status.st_size);
+  content.size = std::min(most, static_cast<std::size_t>(status.st_size));
   content.data = std::make_unique_for_overwrite<std::byte[]>(content.size);
   for (std::size_t at = 0; at < content.size;) {
     const ssize_t n = ::read(file.number(), content.data.get() + at, content.size - at);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -11,10 +12,16 @@
 namespace vsgraphs {
 
 // Writes the parts one after the other beside `path` (as .NAME.part, locked against a second writer), has them reach the
-// disk, and renames. A process that dies meanwhile leaves the old file and at most that one part. Throws InputError naming
-// the file and the cause (no space, no permission, a folder that is missing); the old file then stays.
+// disk, and renames. A process that dies meanwhile leaves the old file and at most that one part. A symbolic link is
+// followed, and stays. The newest `keep` previous versions stay as NAME.1 (the last one), NAME.2, ...; others of such names are
+// not touched. Throws InputError naming the file and the cause (no space, no permission, a folder that is missing); the old
+// file then stays.
 void write_file_atomically(const std::filesystem::path& path,
-                           const std::vector<std::span<const std::byte>>& parts);
+                           const std::vector<std::span<const std::byte>>& parts, int keep = 0);
+
+// The file that is written for `path`: where symbolic links lead, whether anything is there or not. Throws InputError where
+// they lead in a circle.
+std::filesystem::path followed(const std::filesystem::path& path);
 
 // Throws what write_file_atomically() would throw for want of a folder, of permission, or because something else than a
 // file has that name; writes nothing that stays.
@@ -26,7 +33,7 @@ struct FileContent {
   std::span<const std::byte> bytes() const { return {data.get(), size}; }
 };
 
-// All of a regular file. Throws InputError naming it and what is wrong.
-FileContent read_file(const std::filesystem::path& path);
+// All of a regular file, or its first `most` bytes. Throws InputError naming it and what is wrong.
+FileContent read_file(const std::filesystem::path& path, std::size_t most = SIZE_MAX);
 
 }  // namespace vsgraphs

@@ -7,8 +7,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "core/base/check.h"
 
@@ -21,9 +23,15 @@ class AtomicFile : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string content() const {
-    const FileContent read = read_file(file_);
+  std::string content() const { return content_of(file_); }
+  static std::string content_of(const std::filesystem::path& path) {
+    const FileContent read = read_file(path);
     return {reinterpret_cast<const char*>(read.data.get()), read.size};
+  }
+  // What is kept of earlier versions.
+  std::string kept(int number) const { return content_of(file_.string() + "." + std::to_string(number)); }
+  void write(const std::string& text, int keep = 0) const {
+    write_file_atomically(file_, {bytes_of(text)}, keep);
   }
   std::string error_of(const std::string& text) const {
     try {
@@ -84,6 +92,98 @@ TEST_F(AtomicFile, ASecondWriterIsRefused) {
   EXPECT_EQ(content(), "old");
 }
 
+TEST_F(AtomicFile, KeepsAsManyPreviousVersionsAsAsked) {
+  write("one", 2);
+  EXPECT_EQ(files(), 1U);  // nothing was there
+  write("two", 2);
+  write("three", 2);
+  write("four", 2);
+  EXPECT_EQ(content(), "four");
+  EXPECT_EQ(kept(1), "three");
+  EXPECT_EQ(kept(2), "two");
+  EXPECT_EQ(files(), 3U);
+  write("five");
+  write("six", 1);
+  EXPECT_EQ(kept(1), "five");
+  EXPECT_EQ(kept(2), "two") << "beyond those asked for nothing is touched";
+}
+
+// Seen from elsewhere: whoever reads while versions are turned over finds a whole one under the file's own name.
+TEST_F(AtomicFile, ThereIsAlwaysAWholeFile) {
+  const std::string one(1 << 16, '1'), two(1 << 16, '2');
+  write(one, 3);
+  std::atomic<bool> stop = false, whole = true;
+  std::thread reader([&] {
+    while (!stop) {
+      try {
+        const std::string seen = content();
+        if (seen != one && seen != two) whole = false;
+      } catch (const InputError&) {
+        whole = false;
+      }
+    }
+  });
+  for (int i = 0; i < 40; ++i) write(i % 2 ? one : two, 3);
+  stop = true;
+  reader.join();
+  EXPECT_TRUE(whole);
+}
+
+TEST_F(AtomicFile, WhatADeadProcessLeftWhileKeepingIsTakenOver) {
+  write("one");
+  std::filesystem::create_hard_link(file_, folder_ / ".a.bin.1.part");  // it died before the last rename
+  write("two", 1);
+  EXPECT_EQ(kept(1), "one");
+  std::filesystem::remove(file_.string() + ".1");
+  std::filesystem::create_hard_link(file_, file_.string() + ".1");  // it died after it
+  write("older", 0);
+  std::filesystem::remove(file_);
+  std::filesystem::create_hard_link(file_.string() + ".1", file_);
+  std::ofstream(file_.string() + ".2") << "zero";
+  write("three", 2);
+  EXPECT_EQ(kept(1), "two");
+  EXPECT_EQ(kept(2), "zero") << "what is kept already is not kept twice";
+  EXPECT_EQ(files(), 3U);
+}
+
+TEST_F(AtomicFile, WhereTheOldCannotBeKeptItStays) {
+  write("old");
+  std::filesystem::create_directories(file_.string() + ".1/x");
+  try {
+    write("new", 1);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("a.bin.1: Is a directory"));
+  }
+  EXPECT_EQ(content(), "old");
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(AtomicFile, ALinkIsFollowedAndStays) {
+  const std::filesystem::path real = folder_ / "elsewhere" / "real.bin", link = folder_ / "link",
+                              far = folder_ / "far";
+  std::filesystem::create_directories(real.parent_path());
+  std::filesystem::create_symlink("elsewhere/real.bin", link);  // as seen from the link's folder
+  std::filesystem::create_symlink(std::filesystem::absolute(link), far);
+  file_ = far;
+  EXPECT_NO_THROW(require_writable(file_));
+  write("made where the link led");
+  EXPECT_EQ(content_of(real), "made where the link led");
+  write("new", 1);
+  EXPECT_EQ(content_of(real), "new");
+  EXPECT_EQ(content_of(real.string() + ".1"), "made where the link led");
+  EXPECT_TRUE(std::filesystem::is_symlink(link) && std::filesystem::is_symlink(far));
+  EXPECT_EQ(files(), 3U);
+  EXPECT_EQ(followed(far).lexically_normal(), std::filesystem::absolute(real).lexically_normal());
+}
+
+TEST_F(AtomicFile, LinksInACircleAreAnError) {
+  std::filesystem::create_symlink("b", folder_ / "a.bin");
+  std::filesystem::create_symlink("a.bin", folder_ / "b");
+  EXPECT_THAT(error_of("x"), testing::HasSubstr("lead in a circle"));
+  EXPECT_THROW(require_writable(file_), InputError);
+}
+
 TEST_F(AtomicFile, SaysWhatCannotBeWritten) {
   EXPECT_NO_THROW(require_writable(file_));
   EXPECT_EQ(files(), 0U);
@@ -94,6 +194,12 @@ TEST_F(AtomicFile, SaysWhatCannotBeWritten) {
   EXPECT_THROW(require_writable(file_), InputError);
   file_ = "/dev/full";
   EXPECT_THAT(error_of("x"), testing::HasSubstr("it is no ordinary file"));
+}
+
+TEST_F(AtomicFile, ReadsABeginning) {
+  write("0123456789");
+  EXPECT_EQ(read_file(file_, 4).size, 4U);
+  EXPECT_EQ(read_file(file_, 40).size, 10U);
 }
 
 TEST_F(AtomicFile, SaysWhatCannotBeRead) {

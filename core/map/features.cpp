@@ -36,8 +36,8 @@ bool FeatureSet::consistent() const {
   constexpr float most_px = 1e6F;
   return sized && housed && features_.size() == descriptors_.size() && features_.size() <= 65535 &&
          std::all_of(features_.begin(), features_.end(), [](const Feature& f) {
-           return std::abs(f.u) < most_px && std::abs(f.v) < most_px && std::isfinite(f.depth_m) &&
-                  std::abs(f.angle_rad) < 10 && f.level < 16;
+           return std::abs(f.u) < most_px && std::abs(f.v) < most_px && f.depth_m >= 0 &&
+                  f.depth_m < most_px && std::abs(f.angle_rad) < 10 && f.level < 16;
          });
 }
 

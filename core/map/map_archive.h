@@ -14,7 +14,7 @@ namespace vsgraphs {
 void save_map(ArchiveWriter& archive, const std::string& prefix, const Map& map);
 
 // After the archive's shared constants are loaded (load_shared_constants). Throws InputError if a section is missing or
-// what it holds does not fit together, as far as reading the map relies on it.
+// what it holds does not fit together or cannot be (map_checks.h).
 Map load_map(const ArchiveReader& archive, const std::string& prefix);
 
 void load_shared_constants(ArchiveReader& archive);

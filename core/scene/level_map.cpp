@@ -41,8 +41,10 @@ struct Bands {
   Layers low, high, lintel, ground, below;
 };
 
-// Smallest frame around all blocks that reach into the free band, with a margin of one cell.
+// Smallest frame around all blocks that reach into the free band, with a margin of one cell. None where they lie so far apart
+// that most of it would be empty, as in a map that a wrong loop has torn: its rooms are not to be had for any memory.
 GridFrame frame_of(const VoxelBlocks& voxels, double voxel_m, const Bands& bands) {
+  constexpr std::int64_t most_cells = 1 << 24;  // 400 m x 400 m at 0.1 m
   Eigen::Vector2i low = Eigen::Vector2i::Constant(1 << 28), high = -low;
   for (const VoxelBlocks::Block& block : voxels.blocks()) {
     if (block.origin.z() + VoxelBlocks::edge <= bands.low.first || block.origin.z() >= bands.high.end)
@@ -52,6 +54,7 @@ GridFrame frame_of(const VoxelBlocks& voxels, double voxel_m, const Bands& bands
   }
   if (low.x() >= high.x()) return {{0, 0}, voxel_m, 0, 0};
   const Eigen::Vector2i size = high - low + Eigen::Vector2i::Constant(2);
+  if (std::int64_t{size.x()} * size.y() > most_cells) return {{0, 0}, voxel_m, 0, 0};
   return {low - Eigen::Vector2i::Ones(), voxel_m, size.x(), size.y()};
 }
 

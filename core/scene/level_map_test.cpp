@@ -73,6 +73,16 @@ SceneFace ground(double height, double size_m) {
   return face;
 }
 
+TEST(LevelMap, OfPiecesKilometresApartThereIsNone) {
+  VoxelBlocks voxels;
+  set(voxels, 0, 0.1, 2.0, free_voxel);
+  const Eigen::Vector3i far(200000, 100000, 12);
+  voxels.block(far).at(0, 0, 0) = free_voxel;
+  const LevelMap map = build_level_map(voxels, 0.1, 0, {}, {});
+  EXPECT_EQ(map.frame.size(), 0);
+  EXPECT_TRUE(map.cells.empty());
+}
+
 TEST(LevelHeights, TablesAndLandingsAreNoStoreys) {
   const std::vector<SceneFace> grounds{ground(2.8, 3), ground(0.75, 1.2), ground(0, 4), ground(1.4, 1.5),
                                        ground(5.5, 0.6)};  // the last one is too small

@@ -8,7 +8,7 @@ namespace vsgraphs {
 namespace {
 
 constexpr double min_behind_m = 0.08, max_range_m = 6.0, on_sigmas = 3.0, behind_sigmas = 4.0,
-                 min_facing = 0.85;
+                 min_facing = 0.85, farthest_m = 100.0;
 
 void count(std::uint16_t& counter) {
   if (counter < std::numeric_limits<std::uint16_t>::max()) ++counter;
@@ -62,7 +62,7 @@ void PlaneEvidence::integrate(const AnchoredPlane& plane, const DepthGrid& grid,
       const Eigen::Vector3d meets = world_from_camera * (point * (from_camera / (from_camera - distance)));
       const Eigen::Vector2d at = frame_.coordinates(meets);
       // Rays that graze the plane meet it far off.
-      if (at.cwiseAbs().maxCoeff() > 100.0) continue;
+      if (at.cwiseAbs().maxCoeff() > farthest_m) continue;
       const Cell cell = cell_at(at.x(), at.y(), cell_m);
       if (!on)
         passed.push_back(cell);
@@ -85,6 +85,7 @@ void PlaneEvidence::add(const PlaneEvidence& other) {
       if (e.on == 0 && e.through == 0) continue;
       const Eigen::Vector2d at =
           frame_.coordinates(other.frame_.point((s + 0.5) * cell_m, (t + 0.5) * cell_m));
+      if (at.cwiseAbs().maxCoeff() > 2 * farthest_m) continue;
       const Cell cell = cell_at(at.x(), at.y(), cell_m);
       if (e.on > 0) count_on(cell);
       CellEvidence& mine = cells_[cell];

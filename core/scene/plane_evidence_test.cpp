@@ -125,6 +125,14 @@ TEST(PlaneFrameTest, OfAWallTPointsUpAndSIsLevel) {
   EXPECT_NEAR(level.t.dot(up), 0, 1e-9);
 }
 
+TEST(PlaneExtentTest, LeavesOutWhatLiesHalfAKilometreOff) {
+  PlaneExtent extent(PlaneFrame{});
+  extent.add({1, 1, 0});
+  extent.add({90000, 80000, 0});
+  EXPECT_NEAR(extent.area_m2(), 0.01, 1e-9);
+  EXPECT_LT(extent.cells().memory_bytes(), 10000U);
+}
+
 TEST(PlaneExtentTest, KnowsWhatIsNearAndHowMuchWasSeen) {
   PlaneExtent extent(frame_of(plane_at({0, 0, 0}, {0, 0, 1}), {}));
   EXPECT_FALSE(extent.near({0, 0, 0}, 5));

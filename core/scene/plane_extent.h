@@ -31,8 +31,12 @@ class PlaneExtent {
 
   explicit PlaneExtent(const PlaneFrame& frame) : frame_(frame) {}
 
+  // Nothing farther along it belongs to one surface: the keyframe that saw it stands wrong.
+  static constexpr double farthest_m = 500.0;
+
   void add(const Eigen::Vector3d& point) {
     const Eigen::Vector2d c = frame_.coordinates(point);
+    if (!(c.cwiseAbs().maxCoeff() < farthest_m)) return;
     std::uint8_t& cell = cells_[cell_at(c.x(), c.y(), cell_m)];
     count_ += cell == 0;
     cell = 1;

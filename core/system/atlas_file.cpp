@@ -5,6 +5,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/check.h"
 #include "core/map/map_archive.h"
+#include "core/system/atlas_checks.h"
 
 namespace vsgraphs {
 
@@ -12,12 +13,9 @@ namespace {
 
 std::string prefix(std::uint32_t number) { return "map" + std::to_string(number); }
 
-// Where an older version of the format would have to be understood, this is the place: `archive.version()` says it.
 MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
   MapState state;
   state.map = std::make_shared<const Map>(load_map(archive, name));
-  if (state.map->keyframes().index_bound() > PlaceSegment::most_keyframes)
-    archive.damaged("it numbers more keyframes than there can be");
   if (archive.has(name + "/places")) {
     auto places = std::make_shared<PlaceIndex>();
     archive.read(name + "/places", *places);
@@ -28,7 +26,19 @@ MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
     archive.read(name + "/free_space", *free_space);
     state.free_space = std::move(free_space);
   }
+  if (Wrong wrong = wrong_with_map_state(state)) archive.damaged(wrong);
   return state;
+}
+
+// Which file it goes back to. Files of before format 2 say nothing of that: each begins a line of its own.
+void read_lineage(const ArchiveReader& archive, SavedAtlas& atlas) {
+  const std::uint64_t revision = atlas.revision = archive.identity();
+  AtlasVersion& parent = atlas.parent;
+  if (archive.version() < 2)
+    parent = {revision, revision};  // saved again, it is another file
+  else
+    archive.read("lineage", parent.lineage, parent.revision);
+  atlas.state.loaded = {parent.lineage != 0 ? parent.lineage : revision, revision};
 }
 
 }  // namespace
@@ -38,6 +48,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
   archive.add("origin", atlas.program, atlas.commit);
   archive.add("camera", atlas.camera);
   archive.add("configuration", atlas.configuration);
+  archive.add("lineage", atlas.parent.lineage, atlas.parent.revision);
   archive.add("maps", static_cast<std::uint32_t>(atlas.state.maps.size()), atlas.map_names);
   std::uint32_t number = 0;
   for (const MapState& state : atlas.state.maps) {
@@ -52,6 +63,7 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   ArchiveReader archive(name, bytes, atlas_kind);
   SavedAtlas atlas;
   atlas.format = archive.version();
+  read_lineage(archive, atlas);
   archive.read("origin", atlas.program, atlas.commit);
   archive.read("camera", atlas.camera);
   archive.read("configuration", atlas.configuration);
@@ -62,17 +74,34 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   }
   std::uint32_t maps = 0;
   archive.read("maps", maps, atlas.map_names);
-  if (!atlas.map_names.empty() && atlas.map_names.size() != maps)
-    archive.damaged("maps and names differ in number");
   load_shared_constants(archive);
   for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i)));
+  if (Wrong wrong = wrong_with_atlas(atlas)) archive.damaged(wrong);
   return atlas;
 }
 
-void save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas) {
+std::uint64_t save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas, int keep) {
+  std::error_code ignored;
+  require_input(!is_empty(atlas.state) || !std::filesystem::exists(path, ignored),
+                "cannot write " + path.string() + ": a map without keyframes does not replace a file");
   ArchiveWriter archive(atlas_kind);
   write_atlas(archive, atlas);
-  write_file_atomically(path, archive.finish());
+  const auto parts = archive.finish();
+  write_file_atomically(path, parts, keep);
+  return archive_identity(parts.front());
+}
+
+std::optional<std::uint64_t> atlas_revision(const std::filesystem::path& path) {
+  try {
+    const FileContent beginning = read_file(path, identity_bytes);
+    const auto bytes = beginning.bytes();
+    if (bytes.size() < identity_bytes ||
+        std::memcmp(bytes.data(), atlas_kind.magic.data(), atlas_kind.magic.size()) != 0)
+      return std::nullopt;
+    return archive_identity(bytes);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 SavedAtlas load_atlas(const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@
 
 namespace vsgraphs {
 
-inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 1, "atlas"};
+inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 2, "atlas"};
 
 struct SavedAtlas {
   AtlasState state;
@@ -23,11 +24,17 @@ struct SavedAtlas {
   std::string program, commit;                // version and commit of vsgraphs that made it
   std::vector<std::string> map_names;         // one per map, or none at all
   std::uint32_t format = atlas_kind.version;  // of the file it was read from
+  AtlasVersion parent;                        // the file that the run which made it started from
+  std::uint64_t revision = 0;                 // of the file it was read from; 0: it was made here
 };
 
-// Writes the file as a whole or not at all. Throws InputError naming it and the cause; an old file then stays. Any thread:
-// the state is values. Cost: linear in the keyframes, and one copy of it all in memory.
-void save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas);
+// Writes the file as a whole or not at all; returns its revision, which follows from the content alone. The newest `keep`
+// previous versions stay (write_file_atomically). A map without keyframes never replaces a file: InputError, as for whatever else
+// goes wrong, naming the file and the cause; an old file then stays. Any thread: the state is values. Cost: linear in the
+// keyframes, and one copy of it all in memory.
+std::uint64_t save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas, int keep = 0);
+// Of the file's first bytes, whether what follows is whole or not; empty where no atlas can be read.
+std::optional<std::uint64_t> atlas_revision(const std::filesystem::path& path);
 
 // What save_atlas() was given, exactly. Throws InputError, one line that names the file, where it cannot be read, is no
 // atlas, is damaged, or was saved by a newer version.

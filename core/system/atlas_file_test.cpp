@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/atomic_file.h"
 #include "core/base/check.h"
 #include "core/base/rng.h"
 #include "core/base/test_archive.h"
@@ -84,6 +85,87 @@ TEST(AtlasFile, SavingWhatWasLoadedGivesTheSameBytes) {
   EXPECT_EQ(count(map).keyframes, 2U);
   EXPECT_EQ(count(map).landmarks, 48U);
   EXPECT_EQ(count(map).markers, 1U);
+}
+
+// As a run's state comes back from it: what the run started from is known.
+SavedAtlas made_from(const SavedAtlas& loaded) {
+  SavedAtlas next = some_atlas();
+  next.state.loaded = loaded.state.loaded;
+  next.parent = next.state.loaded;
+  return next;
+}
+
+TEST(AtlasFile, TellsWhatItGoesBackTo) {
+  const Bytes first = bytes_of(some_atlas());
+  const SavedAtlas root = read_atlas("FILE", first);
+  EXPECT_EQ(root.parent, AtlasVersion{});
+  EXPECT_EQ(root.state.loaded.lineage, root.state.loaded.revision) << "the first of its line";
+  EXPECT_EQ(root.state.loaded.revision, archive_identity(first));
+  EXPECT_EQ(root.revision, archive_identity(first));
+  EXPECT_EQ(some_atlas().revision, 0U);
+  const SavedAtlas child = read_atlas("FILE", bytes_of(made_from(root)));
+  const SavedAtlas grandchild = read_atlas("FILE", bytes_of(made_from(child)));
+  EXPECT_EQ(child.parent, root.state.loaded);
+  EXPECT_EQ(grandchild.parent, child.state.loaded);
+  EXPECT_EQ(grandchild.state.loaded.lineage, root.state.loaded.revision);
+  EXPECT_NE(child.state.loaded.revision, root.state.loaded.revision) << "though all maps are the same";
+  EXPECT_NE(grandchild.state.loaded.revision, child.state.loaded.revision);
+}
+
+TEST(AtlasFile, TheSameContentIsTheSameRevision) {
+  const SavedAtlas one = read_atlas("FILE", bytes_of(some_atlas()));
+  EXPECT_EQ(one.state.loaded, read_atlas("FILE", bytes_of(some_atlas())).state.loaded);
+  SavedAtlas other = some_atlas();
+  other.map_names[0] = "upstairs";
+  EXPECT_NE(one.state.loaded.revision, read_atlas("FILE", bytes_of(other)).state.loaded.revision);
+}
+
+// A file of before there were lineages.
+Bytes of_format_1(const Bytes& bytes) {
+  const ArchiveReader archive("FILE", bytes, atlas_kind);
+  ArchiveWriter older({atlas_kind.magic, 1, atlas_kind.what});
+  for (const std::string& name : archive.names()) {
+    if (name != "lineage")
+      older.add_bytes(name, {archive.section(name).begin(), archive.section(name).end()});
+  }
+  return test::joined(older.finish());
+}
+
+TEST(AtlasFile, FilesOfFormat1BeginALine) {
+  const Bytes old = of_format_1(bytes_of(some_atlas()));
+  const SavedAtlas atlas = read_atlas("FILE", old);
+  EXPECT_EQ(atlas.format, 1U);
+  EXPECT_EQ(atlas.state.loaded, (AtlasVersion{archive_identity(old), archive_identity(old)}));
+  const SavedAtlas again = read_atlas("FILE", bytes_of(atlas));
+  EXPECT_EQ(again.format, 2U);
+  EXPECT_EQ(again.parent, atlas.state.loaded);
+  EXPECT_EQ(again.state.loaded.lineage, atlas.state.loaded.lineage);
+}
+
+TEST(AtlasFile, RevisionsAreReadOffTheFile) {
+  const std::filesystem::path path = testing::TempDir() + "atlas_file_test_revision.vsg";
+  std::filesystem::remove(path);
+  EXPECT_EQ(atlas_revision(path), std::nullopt);
+  const std::uint64_t revision = save_atlas(path, some_atlas());
+  EXPECT_EQ(atlas_revision(path), revision);
+  EXPECT_EQ(load_atlas(path).state.loaded.revision, revision);
+  write_file_atomically(path, {std::as_bytes(std::span("no atlas, but as long as one's beginning"))});
+  EXPECT_EQ(atlas_revision(path), std::nullopt);
+  std::filesystem::remove(path);
+}
+
+TEST(AtlasFile, AMapWithoutKeyframesReplacesNothing) {
+  const std::filesystem::path path = testing::TempDir() + "atlas_file_test_empty.vsg";
+  std::filesystem::remove(path);
+  const std::uint64_t nothing = save_atlas(path, SavedAtlas{});
+  EXPECT_THROW(save_atlas(path, SavedAtlas{}), InputError) << "not even what is as empty";
+  EXPECT_EQ(atlas_revision(path), nothing);
+  const std::uint64_t house = save_atlas(path, some_atlas(), 1);
+  EXPECT_THROW(save_atlas(path, SavedAtlas{}, 1), InputError);
+  EXPECT_EQ(atlas_revision(path), house);
+  EXPECT_EQ(atlas_revision(path.string() + ".1"), nothing);
+  std::filesystem::remove(path);
+  std::filesystem::remove(path.string() + ".1");
 }
 
 TEST(AtlasFile, MapsWithoutKeyframesAndNoMapsAreAtlasesToo) {

@@ -65,6 +65,7 @@ Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known)
     : config_(config),
       camera_(camera),
       executor_(make_executor(config, camera, known)),
+      loaded_(known.loaded),
       first_index_(first_index_after(known)),
       last_timestamp_s_(-std::numeric_limits<double>::infinity()),
       lost_(has_keyframes(known)),
@@ -136,7 +137,7 @@ Snapshot Slam::snapshot() const { return executor_->content().snapshot; }
 
 AtlasState Slam::atlas_state() const {
   const SnapshotCell::Content content = executor_->content();
-  AtlasState state{*content.dormant};
+  AtlasState state{*content.dormant, loaded_};
   if (content.snapshot->keyframes().size() > 0)
     state.maps.push_back({content.snapshot, content.places, ended_ ? executor_->free_space() : nullptr});
   return state;

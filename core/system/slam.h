@@ -101,6 +101,7 @@ class Slam {
   Config config_;
   Camera camera_;
   std::unique_ptr<Executor> executor_;
+  AtlasVersion loaded_;
   FrameRecords records_;
   mutable std::mutex warnings_mutex_;  // held for as long as it takes to copy the lines
   std::vector<std::string> warnings_;

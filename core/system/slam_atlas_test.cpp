@@ -207,6 +207,17 @@ TEST(Atlas, ASecondSessionStartsInTheFirstOnesMap) {
   EXPECT_EQ(walk.slam().statistics().maps, 1);
 }
 
+TEST(Atlas, ARunKnowsWhatItStartedFrom) {
+  AtlasState known = first_session();
+  EXPECT_EQ(known.loaded, AtlasVersion{});
+  known.loaded = {12, 34};
+  Walk walk(configured("serial"), known);
+  walk.see(120);
+  EXPECT_EQ(walk.slam().atlas_state().loaded, known.loaded);
+  walk.finish();
+  EXPECT_EQ(walk.slam().atlas_state().loaded, known.loaded);
+}
+
 TEST(Atlas, ASecondSessionThatStartsElsewhereIsJoinedInTheFirstOnesWorld) {
   Walk walk(configured("serial"), first_session());
   EXPECT_EQ(walk.see(680), TrackStatus::lost);
@@ -220,7 +231,7 @@ TEST(Atlas, ASecondSessionThatStartsElsewhereIsJoinedInTheFirstOnesWorld) {
 
 TEST(Atlas, AnEmptyAtlasIsLikeNone) {
   Map empty;
-  Walk walk(configured("serial"), AtlasState{{{empty.snapshot(), nullptr, nullptr}}});
+  Walk walk(configured("serial"), AtlasState{{{empty.snapshot(), nullptr, nullptr}}, {}});
   EXPECT_EQ(walk.see(0), TrackStatus::initialised);
 }
 
@@ -262,7 +273,8 @@ TEST(LocaliseOnly, NeedsAMap) {
   config.set("system.localise_only", true);
   EXPECT_THROW(Slam(config, small_camera()), InputError);
   Map empty;
-  EXPECT_THROW(Slam(config, small_camera(), AtlasState{{{empty.snapshot(), nullptr, nullptr}}}), InputError);
+  EXPECT_THROW(Slam(config, small_camera(), AtlasState{{{empty.snapshot(), nullptr, nullptr}}, {}}),
+               InputError);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ bool PlaceIndex::restore(std::vector<PlaceSegment::Content> segments) {
                       std::all_of(content.owners.begin(), content.owners.end(),
                                   [&](auto o) { return known(o.keyframe()); }) &&
                       std::all_of(content.keyframes.begin(), content.keyframes.end(),
-                                  [&](auto id) { return known(id.index); });
+                                  [&](auto id) { return known(id.index) && ids_[id.index] == id; });
     if (!fits) return false;
     segments_.push_back(std::make_shared<const PlaceSegment>(std::move(content)));
   }

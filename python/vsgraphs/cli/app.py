@@ -147,6 +147,16 @@ def run(
             help="Skip a frame whose images cannot be read within this time (a network disk that stalls).",
         ),
     ] = 10.0,
+    overwrite: Annotated[
+        bool,
+        typer.Option("--overwrite", help="Let --save-atlas replace a file that the run does not start from."),
+    ] = False,
+    keep: Annotated[
+        int,
+        typer.Option(
+            min=0, help="Versions of the atlas from before the run to keep: FILE.1 (the last), FILE.2, ..."
+        ),
+    ] = 1,
 ) -> None:
     """Track a camera through a recorded sequence: trajectory, map, scene graph, floor plan."""
     from vsgraphs.cli.output import results_folder
@@ -178,6 +188,8 @@ def run(
             load_atlas=load_atlas,
             autosave_s=autosave,
             frame_timeout_s=frame_timeout,
+            overwrite=overwrite,
+            keep=keep,
             shortcuts={key: value for key, value in shortcuts.items() if value is not None},
             showing=Showing(view, record, view_port, web, view_address),
         )

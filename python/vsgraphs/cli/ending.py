@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import sys
 import time
 from collections.abc import Callable
@@ -110,30 +109,9 @@ class _AtlasSaver:
         try:
             self._atlas.save(self._slam)
         except Exception as error:
-            if not is_mistake(error) or not self._save_in(folder):
+            if not is_mistake(error) or not self._atlas.save_in(folder, self._slam):
                 raise
             line = f"{error}; the atlas is in {self._atlas.save_to}"
             self._atlas.warnings.append(line)
             self._tell(f"warning: {line}")
         self._saved = self._atlas.save_to
-
-    def _save_in(self, folder: Path) -> bool:
-        asked = self._atlas.save_to
-        if asked is None or asked.absolute().parent == folder.absolute():
-            return False
-        if self._slam.atlas_state().keyframes == 0:
-            return False
-        self._atlas.save_to = _free_name(folder / asked.name)
-        if attempt(lambda: self._atlas.save(self._slam)) is None:
-            return True
-        self._atlas.save_to = asked
-        return False
-
-
-def _free_name(path: Path) -> Path:
-    """The path, or NAME-2.SUFFIX, ...: another file of that name is not this run's to replace."""
-    for number in itertools.count(2):
-        if not path.exists():
-            return path
-        path = path.with_name(f"{path.stem.removesuffix(f'-{number - 1}')}-{number}{path.suffix}")
-    raise AssertionError

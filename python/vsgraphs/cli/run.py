@@ -27,6 +27,7 @@ from vsgraphs.datasets import RecordedSequence, open_sequence
 from vsgraphs.datasets.prefetch import DEFAULT_LIMIT_S, Prefetcher
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import prepare_directory
+from vsgraphs.export.lock import Locks
 
 if TYPE_CHECKING:
     from vsgraphs.markers import KeyframeMarkers, MarkerDetector, MarkerRegistry
@@ -57,22 +58,24 @@ class RunRequest:
     load_atlas: Path | None = None
     autosave_s: float | None = None
     frame_timeout_s: float = DEFAULT_LIMIT_S
+    overwrite: bool = False  # save_atlas may replace a file that the run does not start from
+    keep: int = 1  # previous versions of save_atlas
 
 
 def run_sequence(request: RunRequest) -> int:
     """Runs and writes the results; returns the exit code. Raises InputError for what the user can cure."""
-    with that_may_go():
-        return _run_sequence(request)
+    warn = lambda line: print(f"warning: {line}", file=sys.stderr, flush=True)  # noqa: E731
+    with that_may_go(), Locks(warn) as locks:
+        return _run_sequence(request, locks)
 
 
-def _run_sequence(request: RunRequest) -> int:
+def _run_sequence(request: RunRequest, locks: Locks) -> int:
     sequence = open_sequence(request.source, request.camera)
     _check_map_colours(request)
     segmenter = _make_segmenter(request.segmenter)
     sought = _sought_markers(request.markers, sequence)
-    prepare_directory(request.out)
-    _check_schedule_out(request)
-    atlas = AtlasFiles.of(request)
+    _prepare_out(request, locks)
+    atlas = AtlasFiles.of(request, locks)
     view = RunView(request.showing)
     frames = sequence.frames[: request.max_frames]
     _announce(sequence)
@@ -130,6 +133,13 @@ def _announce(sequence: RecordedSequence) -> None:
     print(sequence.describe(), flush=True)
     for line in sequence.warnings:
         print(f"warning: {line}", file=sys.stderr, flush=True)
+
+
+def _prepare_out(request: RunRequest, locks: Locks) -> None:
+    """Makes the folder, and keeps a second program from writing there."""
+    prepare_directory(request.out)
+    locks.hold_folder(request.out)
+    _check_schedule_out(request)
 
 
 def _check_schedule_out(request: RunRequest) -> None:

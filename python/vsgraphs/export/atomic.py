@@ -12,18 +12,21 @@ _unfinished: set[Path] = set()
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Writes beside `path` and renames. Raises InputError (no space, no permission); an old file then
-    stays.
+    """Writes beside `path` and renames; a symbolic link is followed. Raises InputError (no space, no
+    permission); an old file then stays.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    real = Path(os.path.realpath(path))
+    if os.path.lexists(real) and not real.is_file():  # a device, a folder, links that lead in a circle
+        raise InputError(f"cannot write {path}: it is no ordinary file; give another name")
+    beside = real.with_name(f".{real.name}.{os.getpid()}.part")
     _unfinished.add(beside)
     try:
         with beside.open("wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        beside.replace(path)
+        beside.replace(real)
     except OSError as error:
         with contextlib.suppress(OSError):
             beside.unlink()
