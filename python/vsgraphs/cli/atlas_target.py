@@ -58,37 +58,37 @@ class AtlasTarget:
         moved = None
         if self._content() not in (self._known, None):
             moved = f"{self.path} was changed by another program while this one ran, and is left as it is"
-            self._give_way()
+            self.path, self._known, self._keep = self._free(self.path), None, 0
         self._known = atlas.save(self.path, keep=self._keep)
         self._keep = 0  # from now on it is this run's own that is replaced
         return moved
 
     def save_beside(self, atlas: Any) -> None:
-        """Where `save` failed for reasons that may lie in that very file."""
-        self._give_way()
-        self.save(atlas)
+        """Where `save` failed for reasons that may lie in that very file. If it fails too, all stays as it
+        was.
+        """
+        self._save_elsewhere(self._free(self.path), atlas)
 
     def save_in(self, folder: Path, atlas: Any) -> None:
-        """Writes it into another folder instead, under a name that is free there; `path` stays where that
-        fails.
-        """
-        asked = self.path
-        self.path = folder / asked.name
-        if os.path.lexists(self.path):
-            self._give_way()
-        self._known, self._keep = None, 0
+        """Writes it into another folder, under a name that is free there; as `save_beside`."""
+        wanted = folder / self.path.name
+        self._save_elsewhere(self._free(wanted) if os.path.lexists(wanted) else wanted, atlas)
+
+    def _save_elsewhere(self, path: Path, atlas: Any) -> None:
+        asked = self.path, self._known, self._keep
+        self.path, self._known, self._keep = path, None, 0
         try:
             self.save(atlas)
         except Exception:
-            self.path = asked
+            self.path, self._known, self._keep = asked
             raise
 
-    def _give_way(self) -> None:
+    @staticmethod
+    def _free(path: Path) -> Path:
         number = 1
-        while os.path.lexists(free := self.path.with_name(f"{self.path.stem}-{number}{self.path.suffix}")):
+        while os.path.lexists(free := path.with_name(f"{path.stem}-{number}{path.suffix}")):
             number += 1
-        self.path = free
-        self._known, self._keep = None, 0
+        return free
 
     def _content(self) -> str | None:
         """Stands for what lies there: another text for anything else, None for nothing."""

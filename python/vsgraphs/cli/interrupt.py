@@ -32,9 +32,11 @@ def leave_at_once() -> None:
 
 
 def let_die() -> None:
-    """From now on each of the signals kills the process as the system does: when all is done and told."""
+    """From now on the signals kill the process as the system does: when all is done and told. But for SIGHUP, which
+    comes more than once, and would then change the exit code.
+    """
     for number in _heeded():
-        signal.signal(number, signal.SIG_DFL)
+        signal.signal(number, signal.SIG_IGN if number == signal.SIGHUP else signal.SIG_DFL)
 
 
 class Interrupt:
@@ -130,9 +132,10 @@ def _leave(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
 def _end_process(number: int, words: str) -> None:
     """No handlers, no threads, no destructors: nothing that could wait or fail."""
     _say(words)
-    atomic = sys.modules.get("vsgraphs.export.atomic")
-    if atomic is not None:
-        atomic.remove_unfinished()
+    for name, clear_up in (("atomic", "remove_unfinished"), ("lock", "remove_lock_files")):
+        module = sys.modules.get(f"vsgraphs.export.{name}")
+        if module is not None:
+            getattr(module, clear_up)()
     os._exit(EXIT_SIGNAL + number)
 
 

@@ -50,10 +50,8 @@ class Locks:
         """Lets go of all and removes the lock files."""
         while self._held:
             descriptor, lock = self._held.pop()
-            _inherited.discard(descriptor)
-            with contextlib.suppress(OSError):
-                if _is_open_as(descriptor, lock):  # nobody else's: the folder may have been made anew
-                    lock.unlink()
+            _held_by_all.pop(descriptor, None)
+            _remove(descriptor, lock)
             os.close(descriptor)
 
     def _hold(self, lock: Path, what: Path) -> None:
@@ -73,7 +71,7 @@ class Locks:
             os.ftruncate(descriptor, 0)
             os.pwrite(descriptor, f"{os.getpid()} {socket.gethostname()}\n".encode(), 0)
         self._held.append((descriptor, lock))
-        _inherited.add(descriptor)
+        _held_by_all[descriptor] = lock
 
 
 def _locked(lock: Path) -> int:
@@ -116,14 +114,27 @@ def _told_holder(lock: Path) -> str:
     return f" (process {number})" if host == socket.gethostname() else f" (process {number} on {host})"
 
 
-# A forked child would keep the locks of a parent that is gone.
-_inherited: set[int] = set()
+def _remove(descriptor: int, lock: Path) -> None:
+    with contextlib.suppress(OSError):
+        if _is_open_as(descriptor, lock):  # nobody else's: the folder may have been made anew
+            lock.unlink()
+
+
+_held_by_all: dict[int, Path] = {}
+
+
+def remove_lock_files() -> None:
+    """For a process that ends at once: the locks end with it, their files would stay."""
+    for descriptor, lock in list(_held_by_all.items()):
+        _remove(descriptor, lock)
 
 
 def _let_go_in_child() -> None:
-    while _inherited:
+    """A forked child would keep the locks of a parent that is gone."""
+    while _held_by_all:
+        descriptor, _ = _held_by_all.popitem()
         with contextlib.suppress(OSError):
-            os.close(_inherited.pop())
+            os.close(descriptor)
 
 
 os.register_at_fork(after_in_child=_let_go_in_child)
