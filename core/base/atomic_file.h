@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,7 +27,9 @@ struct FileContent {
   std::span<const std::byte> bytes() const { return {data.get(), size}; }
 };
 
-// All of a regular file. Throws InputError naming it and what is wrong.
-FileContent read_file(const std::filesystem::path& path);
+// All of a regular file of at most `limit` bytes; anything else is refused without waiting for it. Throws InputError naming
+// it and what is wrong.
+FileContent read_file(const std::filesystem::path& path,
+                      std::size_t limit = std::numeric_limits<std::size_t>::max());
 
 }  // namespace vsgraphs
