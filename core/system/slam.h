@@ -36,6 +36,8 @@ struct RunStatistics {
   std::vector<std::string> warnings;
 };
 
+// Belongs to the process that made it: a forked child has its locks and not its threads. There everything throws RunError, and
+// the destructor leaves to the system what it cannot end.
 class Slam {
  public:
   // Throws InputError if configuration or camera make no sense, or a schedule to replay cannot be read.
@@ -88,6 +90,7 @@ class Slam {
     double timestamp_s;
     AnchoredPose pose;
   };
+  void require_own_process() const;
   void note_status(const TrackedFrame& frame);
   void keep_record(const TrackedFrame& frame);
   Snapshot map_given_out() const;
@@ -96,6 +99,7 @@ class Slam {
   // Held while a frame is tracked and while its records are read: a second caller of track() is told so, readers
   // wait for the frame to end.
   mutable std::mutex frames_mutex_;
+  const int process_;
   Config config_;
   Camera camera_;
   std::unique_ptr<Executor> executor_;
