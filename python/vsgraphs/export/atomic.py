@@ -10,21 +10,38 @@ from vsgraphs.errors import InputError
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Writes beside `path` and renames. Raises InputError (no space, no permission); an old file then
+    """Writes beside `path` and renames; a symbolic link stays, the file it names is written.
+
+    Raises InputError: no space, no permission, a folder, a pipe or a device of that name. An old file then
     stays.
     """
-    data = content.encode("utf-8") if isinstance(content, str) else content
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
+    try:
+        target = _target(path)
+        beside = target.with_name(f".{target.name}.{os.getpid()}.part")
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:  # a name that is too long, or none
+        raise InputError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from None
     try:
         with beside.open("wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        beside.replace(path)
+        beside.replace(target)
     except OSError as error:
         with contextlib.suppress(OSError):
             beside.unlink()
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+
+
+def _target(path: Path) -> Path:
+    """The file to replace. Raises InputError for what is no file: replaced, a device would be gone."""
+    target = path.resolve() if path.is_symlink() else path
+    if target.exists() and not target.is_file():
+        kind = "a folder" if target.is_dir() else "a pipe or a device, not a regular file"
+        raise InputError(f"cannot write {path}: it is {kind}; give the name of a file")
+    return target
 
 
 def prepare_directory(path: Path) -> None:
