@@ -12,12 +12,17 @@ def main() -> None:
     # numpy's linear algebra would start a thread per core, which nothing here uses. Before numpy is imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from vsgraphs.cli.failures import told
+    from vsgraphs.cli.streams import flush_output, prepare_streams
 
-    with told():
-        from vsgraphs.compiled import check_processor
+    prepare_streams()
+    try:
+        with told():
+            from vsgraphs.compiled import check_processor
 
-        check_processor()  # before numpy, which an old processor does not run either, and says so less kindly
-        from vsgraphs.cli.app import app
+            check_processor()  # before numpy, which an old processor does not run, and says so less kindly
+            from vsgraphs.cli.app import app
 
-        app()
+            app()
+    finally:
+        flush_output()
     sys.exit(0)
