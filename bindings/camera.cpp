@@ -4,12 +4,26 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
 #include "bindings/bind.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace vsgraphs {
+
+namespace {
+
+// A number too large for the field is too large for a camera; validate() says so.
+int side_of(std::int64_t px) {
+  return static_cast<int>(
+      std::clamp<std::int64_t>(px, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+}
+
+}  // namespace
 
 void bind_camera(nb::module_& m) {
   using Noise = std::array<double, 3>;
@@ -19,13 +33,13 @@ void bind_camera(nb::module_& m) {
       "Pixels have their centres at integers; axes: x right, y down, z forward. Lengths in metres.")
       .def(
           "__init__",
-          [](Camera* self, int width, int height, double fx, double fy, double cx, double cy,
-             std::array<double, 5> distortion, double fps, double depth_scale, double depth_min_m,
+          [](Camera* self, std::int64_t width, std::int64_t height, double fx, double fy, double cx,
+             double cy, std::array<double, 5> distortion, double fps, double depth_scale, double depth_min_m,
              double depth_max_m, std::vector<std::uint16_t> invalid_depth, Noise noise,
              double depth_alignment_m) {
             Camera camera;
-            camera.width = width;
-            camera.height = height;
+            camera.width = side_of(width);
+            camera.height = side_of(height);
             camera.fx = fx;
             camera.fy = fy;
             camera.cx = cx;

@@ -1,5 +1,8 @@
 #include <nanobind/nanobind.h>
 
+#include <string>
+#include <system_error>
+
 #include "bindings/bind.h"
 #include "build_info.h"
 #include "core/base/check.h"
@@ -15,6 +18,10 @@ NB_MODULE(_core, m) {
       PyErr_SetString(nanobind::module_::import_("vsgraphs.errors").attr("InputError").ptr(), e.what());
     } catch (const vsgraphs::RunError& e) {
       PyErr_SetString(nanobind::module_::import_("vsgraphs.errors").attr("RunError").ptr(), e.what());
+    } catch (const std::system_error& e) {
+      const bool no_room = e.code() == std::errc::resource_unavailable_try_again;  // for another thread
+      PyErr_SetString(no_room ? PyExc_MemoryError : PyExc_OSError,
+                      (std::string("the system refused: ") + e.what()).c_str());
     }
   });
   m.def(

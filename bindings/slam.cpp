@@ -8,6 +8,7 @@
 
 #include "bindings/arrays.h"
 #include "bindings/bind.h"
+#include "bindings/images.h"
 #include "bindings/markers.h"
 #include "core/base/check.h"
 
@@ -17,56 +18,6 @@ using namespace nb::literals;
 namespace vsgraphs {
 
 namespace {
-
-using AnyImage = nb::ndarray<nb::ro, nb::device::cpu>;
-
-std::string shape_of(const AnyImage& image) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < image.ndim(); ++i) text += (i ? ", " : "") + std::to_string(image.shape(i));
-  return text + ")";
-}
-
-// Rows must be dense; rows themselves may be apart (a view of a wider array).
-template <typename T>
-ImageView<T> view_of(const AnyImage& image, const char* name, std::int64_t channels) {
-  const bool dense = image.stride(1) == channels && (image.ndim() == 2 || image.stride(2) == 1);
-  require_input(
-      dense && image.stride(0) % channels == 0,
-      std::string(name) + ": the image's rows are not contiguous; pass numpy.ascontiguousarray(image)");
-  return {static_cast<const T*>(image.data()), static_cast<int>(image.shape(1)),
-          static_cast<int>(image.shape(0)), image.stride(0) / channels};
-}
-
-template <typename T>
-ImageView<T> label_view(const AnyImage& image, const char* name) {
-  require_input(image.ndim() == 2 && image.dtype() == nb::dtype<T>(),
-                std::string("segmentation: ") + name + " must be a " + std::to_string(8 * sizeof(T)) +
-                    "-bit (height, width) array (roles uint8, confidence float32, instances uint16)");
-  return view_of<T>(image, name, 1);
-}
-
-RgbdFrame frame_of(const AnyImage& rgb, const AnyImage& depth, double timestamp) {
-  RgbdFrame frame;
-  frame.timestamp_s = timestamp;
-  const bool grey = rgb.ndim() == 2;
-  require_input(
-      rgb.dtype() == nb::dtype<std::uint8_t>() && (grey || (rgb.ndim() == 3 && rgb.shape(2) == 3)),
-      "rgb: must be uint8 of shape (height, width, 3) or (height, width), not of shape " + shape_of(rgb));
-  if (grey) {
-    frame.grey = view_of<std::uint8_t>(rgb, "rgb", 1);
-  } else {
-    frame.colour = view_of<Rgb>(rgb, "rgb", 3);
-  }
-  require_input(depth.ndim() == 2, "depth: must have shape (height, width), not " + shape_of(depth));
-  if (depth.dtype() == nb::dtype<std::uint16_t>()) {
-    frame.depth.raw = view_of<std::uint16_t>(depth, "depth", 1);
-  } else {
-    require_input(depth.dtype() == nb::dtype<float>(),
-                  "depth: must be uint16 (raw units, see Camera.depth_scale) or float32 (metres)");
-    frame.depth.metres = view_of<float>(depth, "depth", 1);
-  }
-  return frame;
-}
 
 nb::object pose_or_none(const TrackedFrame& frame) {
   if (!has_pose(frame.status)) return nb::none();
@@ -271,12 +222,12 @@ void bind_slam(nb::module_& m) {
           "system.localise_only without a map.")
       .def(
           "track",
-          [](Slam& slam, const AnyImage& rgb, const AnyImage& depth, double timestamp) {
-            const RgbdFrame frame = frame_of(rgb, depth, timestamp);
+          [](Slam& slam, nb::object rgb, nb::object depth, double timestamp) {
+            const GivenFrame given = frame_of(rgb, depth, timestamp);
             const nb::gil_scoped_release release;
-            return slam.track(frame);
+            return slam.track(given.frame);
           },
-          "rgb"_a, "depth"_a, "timestamp"_a,
+          "rgb"_a.none(), "depth"_a.none(), "timestamp"_a,
           nb::sig("def track(self, rgb: numpy.typing.NDArray[numpy.uint8], depth: "
                   "numpy.typing.NDArray[numpy.uint16] | numpy.typing.NDArray[numpy.float32], timestamp: "
                   "float) -> "
@@ -292,16 +243,13 @@ void bind_slam(nb::module_& m) {
           "frame then changes nothing. The GIL is released while tracking.")
       .def(
           "add_segmentation",
-          [](Slam& slam, std::int64_t frame_index, const AnyImage& roles,
-             const std::optional<AnyImage>& confidence, const std::optional<AnyImage>& instances) {
-            Segmentation segmentation;
-            segmentation.roles = label_view<std::uint8_t>(roles, "roles");
-            if (confidence) segmentation.confidence = label_view<float>(*confidence, "confidence");
-            if (instances) segmentation.instances = label_view<std::uint16_t>(*instances, "instances");
+          [](Slam& slam, std::int64_t frame_index, nb::object roles, nb::object confidence,
+             nb::object instances) {
+            const GivenSegmentation given = segmentation_of(roles, confidence, instances);
             const nb::gil_scoped_release release;
-            slam.add_segmentation(frame_index, segmentation);
+            slam.add_segmentation(frame_index, given.segmentation);
           },
-          "frame_index"_a, "roles"_a, "confidence"_a = nb::none(), "instances"_a = nb::none(),
+          "frame_index"_a, "roles"_a.none(), "confidence"_a = nb::none(), "instances"_a = nb::none(),
           nb::sig("def add_segmentation(self, frame_index: int, roles: numpy.typing.NDArray[numpy.uint8], "
                   "confidence: numpy.typing.NDArray[numpy.float32] | None = None, instances: "
                   "numpy.typing.NDArray[numpy.uint16] | None = None) -> None"),

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -92,6 +93,96 @@ def test_what_is_wrong_with_an_image_is_said(scene: Scene, camera: vsgraphs.Came
             slam.track(bad_rgb, bad_depth, stamp)
         assert "\n" not in str(caught.value)
     assert slam.track(rgb, depth, 2.0).tracked  # nothing was harmed
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda rgb, depth: (rgb / 255, depth),
+            r"rgb: must be uint8 .*, not float64 of shape \(240, 320, 3\); from 0",
+        ),
+        (lambda rgb, depth: (rgb.astype(np.int8), depth), r"rgb: must be uint8 .*, not int8 of shape"),
+        (lambda rgb, depth: (rgb.astype(bool), depth), r"rgb: must be uint8 .*, not bool of shape"),
+        (
+            lambda rgb, depth: (rgb.astype(np.complex64), depth),
+            r"rgb: must be uint8 .*, not complex64 of shape",
+        ),
+        (lambda rgb, depth: (rgb.astype(">u2"), depth), r"rgb: must be uint8 .*, not >u2"),
+        (lambda rgb, depth: (rgb.astype(object), depth), r"rgb: must be uint8 .*, not object"),
+        (lambda rgb, depth: (rgb.astype(str), depth), r"rgb: must be uint8 .*, not <U"),
+        (
+            lambda rgb, depth: (depth, rgb),
+            r"rgb: must be uint8 .*, not uint16 .*; are rgb and depth in each other's",
+        ),
+        (
+            lambda rgb, depth: (np.dstack([rgb, rgb[:, :, :1]]), depth),
+            r"not uint8 of shape \(240, 320, 4\); leave out",
+        ),
+        (
+            lambda rgb, depth: (np.moveaxis(rgb, 2, 0).copy(), depth),
+            r"shape \(3, 240, 320\); the channels come last",
+        ),
+        (
+            lambda rgb, depth: (rgb[None], depth),
+            r"rgb: must be uint8 .*, not uint8 of shape \(1, 240, 320, 3\)",
+        ),
+        (lambda rgb, depth: (rgb[0, :, 0], depth), r"rgb: must be uint8 .*, not uint8 of shape \(320,\)"),
+        (lambda rgb, depth: (rgb[0, 0, 0], depth), r"rgb: must be uint8"),
+        (lambda rgb, depth: (rgb[:, ::-1], depth), r"rgb: the image's rows are not contiguous"),
+        (lambda rgb, depth: (rgb[::-1], depth), r"rgb: the image's rows are not contiguous"),
+        (lambda rgb, depth: (np.asfortranarray(rgb), depth), r"rgb: the image's rows are not contiguous"),
+        (lambda rgb, depth: (rgb[:0], depth), r"rgb: the image is empty"),
+        (
+            lambda rgb, depth: (rgb, depth.astype(np.int32)),
+            r"depth: must be uint16 .* or float32 .*, not int32 of shape",
+        ),
+        (
+            lambda rgb, depth: (rgb, depth.astype(np.float64)),
+            r"not float64 .*; metres: depth.astype\(numpy.float32\)",
+        ),
+        (lambda rgb, depth: (rgb, depth.astype(np.float16)), r"depth: must be .*, not float16 of shape"),
+        (lambda rgb, depth: (rgb, depth.astype(">u2")), r"depth: must be uint16 .*, not >u2"),
+        (
+            lambda rgb, depth: (rgb, depth[:, :, None]),
+            r"not uint16 of shape \(240, 320, 1\); take depth\[:, :, 0\]",
+        ),
+        (lambda rgb, depth: (rgb, depth.T), r"depth"),
+        (lambda rgb, depth: (rgb, depth[::2, ::2]), r"depth"),
+    ],
+)
+def test_an_array_s_type_and_shape_are_told_as_they_are(
+    scene: Scene, camera: vsgraphs.Camera, change: Any, message: str
+) -> None:
+    slam = vsgraphs.Slam(vsgraphs.Config(), camera)
+    rgb, depth = np.ascontiguousarray(scene.rgb(0)), scene.depth(0)
+    with pytest.raises(vsgraphs.InputError, match=message) as caught:
+        slam.track(*change(rgb, depth), 1.0)
+    assert "\n" not in str(caught.value)
+    assert slam.track(rgb, depth, 1.0).tracked
+
+
+def test_what_is_no_array_is_told(scene: Scene, camera: vsgraphs.Camera) -> None:
+    slam = vsgraphs.Slam(vsgraphs.Config(), camera)
+    rgb, depth = np.ascontiguousarray(scene.rgb(0)), scene.depth(0)
+    for bad, name in (([[1]], "list"), ("x", "str"), (None, "NoneType")):
+        with pytest.raises(TypeError, match=f"rgb: must be a numpy array, not {name}"):
+            slam.track(bad, depth, 1.0)
+        with pytest.raises(TypeError, match=f"depth: must be a numpy array, not {name}"):
+            slam.track(rgb, bad, 1.0)
+    index = slam.track(rgb, depth, 1.0).index
+    roles = np.zeros((6, 8), np.uint8)
+    with pytest.raises(
+        vsgraphs.InputError, match=r"segmentation: roles: must be uint8 .*, not int64 of shape \(6, 8\)"
+    ):
+        slam.add_segmentation(index, roles.astype(np.int64))
+    with pytest.raises(
+        vsgraphs.InputError, match=r"segmentation: confidence: must be float32 .*, not float64"
+    ):
+        slam.add_segmentation(index, roles, roles.astype(np.float64))
+    with pytest.raises(vsgraphs.InputError, match=r"segmentation: instances: must be uint16 .*, not uint8"):
+        slam.add_segmentation(index, roles, None, roles)
+    slam.add_segmentation(index, roles, roles.astype(np.float32), roles.astype(np.uint16))
 
 
 def test_a_run_starts_from_the_maps_of_another(scene: Scene, camera: vsgraphs.Camera) -> None:

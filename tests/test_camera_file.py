@@ -62,7 +62,7 @@ def test_descriptive_keys_are_free_but_told(tmp_path: Path) -> None:
         (GOOD.replace("width: 640", "width: 640.5"), "width is 640.5, expected whole pixels"),
         (GOOD.replace("cx: 319.5", "cx: 900"), "lies outside the image"),
         (GOOD.replace("5000", "0"), "depth_scale is 0.0, must be positive"),
-        (GOOD + "depth_min: 5\ndepth_max: 2\n", "must be at least 0 and below depth_max"),
+        (GOOD + "depth_min: 5\ndepth_max: 2\n", "must be above 0 and below depth_max"),
         (GOOD + "distortion: [1, 2]\n", "distortion has 2 numbers, expected 4 or 5"),
         (GOOD + "distortion: 0.1\n", "distortion is 0.1, expected a list"),
         (GOOD + "distortion: [0, 0, 0, 0]\nk1: 0.1\n", "not both"),

@@ -210,13 +210,13 @@ def test_openloris_truth_is_the_cameras_for_eval_too(tmp_path: Path, which: str)
         ),
         (lambda f: (f / "sensors.yaml").unlink(), r"sensors\.yaml is missing.*--camera FILE"),
         (lambda f: (f / "sensors.yaml").write_text("a: 1\n"), r"no sensor d400_color_optical_frame"),
-        (lambda f: (f / "sensors.yaml").write_text("a: [1\n"), r"sensors\.yaml: not a YAML file of OpenCV"),
+        (lambda f: (f / "sensors.yaml").write_text("a: [1\n"), r"sensors\.yaml:2: not valid YAML"),
         (lambda f: (f / "sensors.yaml").write_text("words"), r"sensors\.yaml: expected the YAML"),
         (
             lambda f: _replace(f / "sensors.yaml", "width: 64", "width: wide"),
             r"width is 'wide', expected a number",
         ),
-        (lambda f: _replace(f / "sensors.yaml", "cols: 4", "cols: 3"), r"not a YAML file of OpenCV"),
+        (lambda f: _replace(f / "sensors.yaml", "cols: 4", "cols: 3"), r"not a matrix as OpenCV writes it"),
         (lambda f: _replace(f / "sensors.yaml", "60.0e", "-60.0e"), r"fx is -60\.0, must be positive"),
         (lambda f: (f / "color.txt").write_text("# none\n"), r"color\.txt lists no images"),
         (
@@ -321,7 +321,7 @@ def test_redwood_camera_damage(tmp_path: Path, values: object, message: str) -> 
     folder = write_redwood(tmp_path / "bedroom")
     path = folder / "camera_intrinsic.json"
     path.write_text(values if isinstance(values, str) else json.dumps(values))
-    with pytest.raises(InputError, match=f"camera_intrinsic.json: .*{message}") as caught:
+    with pytest.raises(InputError, match=f"camera_intrinsic.json:.*{message}") as caught:
         open_sequence(folder)
     assert "\n" not in str(caught.value)
 

@@ -66,7 +66,7 @@ def change(path: str, value: Any) -> Callable[[Values], None]:
         (
             "dictionary",
             "4x4_5",
-            "dictionary: unknown dictionary \"4x4_5\"; did you mean '4x4_50'? known: 4x4_50,",
+            "dictionary: unknown dictionary '4x4_5'; did you mean '4x4_50'? known: 4x4_50,",
         ),
         ("dictionary", 5, "dictionary: unknown dictionary 5; known: 4x4_50"),
         ("size_m", 0, "size_m: expected the black square's side in metres, not 0"),
@@ -83,11 +83,11 @@ def change(path: str, value: Any) -> Callable[[Values], None]:
         ("markers.-1", {"name": "x", "kind": "room"}, "markers.-1: no marker of 4x4_50"),
         ("markers.seven", {"name": "x", "kind": "room"}, "markers.seven: no marker of 4x4_50"),
         ("markers.07", {"name": "x", "kind": "room"}, "markers.07: marker 7 is there twice"),
-        ("markers.7", "kitchen", 'markers.7: expected an object, not "kitchen"'),
+        ("markers.7", "kitchen", "markers.7: expected an object, not 'kitchen'"),
         (
             "markers.7.kind",
             "rom",
-            "markers.7.kind: unknown kind \"rom\"; did you mean 'room'? known: room, corridor, door",
+            "markers.7.kind: unknown kind 'rom'; did you mean 'room'? known: room, corridor, door",
         ),
         ("markers.7.kind", ..., 'markers.7: "kind" is missing'),
         ("markers.7.name", ..., 'markers.7: "name" is missing'),
@@ -115,7 +115,7 @@ def test_mistakes_name_file_and_key(tmp_path: Path, path: str, value: Any, compl
         ("[]", "expected an object, not []"),
         ('{"markers": {"7": 1, "7": 2}}', '"7" is there twice'),
         ("[" * 100_000, "not valid JSON"),
-        ('{"dictionary": "4x4_50", "size_m": NaN, "markers": {}}', "size_m: expected"),
+        ('{"dictionary": "4x4_50", "size_m": NaN, "markers": {}}', ":1: NaN is no number"),
     ],
 )
 def test_files_that_are_none(tmp_path: Path, text: str, complaint: str) -> None:

@@ -339,7 +339,7 @@ def test_tolerances_from_text() -> None:
     for text, message in (
         ("offset=1", "unknown tolerance 'offset'"),
         ("offset_m=wide", "not a number"),
-        ("offset_m=-1", "must not be negative"),
+        ("offset_m=-1", "must be finite and not negative"),
     ):
         with pytest.raises(InputError, match=message):
             options_from([text])

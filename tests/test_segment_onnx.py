@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import onnx
 import pytest
-from onnx import TensorProto
+from onnx import TensorProto, helper, numpy_helper
 from tiny_models import colour_model, constant_model, write_sidecar
 
 from vsgraphs.errors import InputError
@@ -231,3 +233,110 @@ def test_threads_are_an_option(tmp_path: Path) -> None:
     options = segmenter._session.get_session_options()
     assert options.intra_op_num_threads == 2
     assert options.get_session_config_entry("session.intra_op.allow_spinning") == "0"
+
+
+def refused(model: Path, sidecar: Path, **runtime: Any) -> str:
+    with pytest.raises(InputError) as caught:
+        OnnxSegmenter(model, sidecar, Runtime(**runtime))
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("image", "message"),
+    [
+        ((1, 3, 0, 0), "takes images of 0x0 pixels; sides are 1 to 8192"),
+        ((1, 3, 100_000, 100_000), "takes images of 100000x100000 pixels"),
+        ((4, 3, 6, 8), "takes 4 images at once"),
+        ((1, 5, 6, 8), "is not NCHW with 3 colours"),
+        ((1, 3), "is not NCHW with 3 colours"),
+    ],
+)
+def test_inputs_that_are_no_image(tmp_path: Path, image: tuple[int, ...], message: str) -> None:
+    model = colour_model(tmp_path / "m.onnx", image=image)
+    sidecar = write_sidecar(tmp_path / "m.json", input={"layout": "NCHW"})
+    assert message in refused(model, sidecar)
+
+
+def built(path: Path, nodes: list[Any], inputs: list[Any], outputs: list[Any], **more: Any) -> Path:
+    graph = helper.make_graph(nodes, "odd", inputs, outputs, **more)
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 13)])
+    model.ir_version = 8
+    onnx.save(model, path)
+    return path
+
+
+def picture(name: str) -> Any:
+    return helper.make_tensor_value_info(name, TensorProto.FLOAT, (1, 3, 6, 8))
+
+
+def test_a_model_without_inputs_or_outputs(tmp_path: Path) -> None:
+    sidecar = write_sidecar(tmp_path / "m.json")
+    weights = numpy_helper.from_array(np.zeros((1, 3, 6, 8), np.float32), "w")
+    node = helper.make_node("Identity", ["w"], ["scores"])
+    model = built(tmp_path / "m.onnx", [node], [], [picture("scores")], initializer=[weights])
+    assert "takes no input" in refused(model, sidecar)
+    model = built(tmp_path / "m.onnx", [], [picture("image")], [])
+    assert re.search("not an ONNX model|gives no output", refused(model, sidecar))
+
+
+def test_a_model_that_never_ends_is_stopped(tmp_path: Path) -> None:
+    body = helper.make_graph(
+        [helper.make_node("Identity", ["go"], ["goes"]), helper.make_node("Identity", ["a"], ["b"])],
+        "body",
+        [
+            helper.make_tensor_value_info("i", TensorProto.INT64, ()),
+            helper.make_tensor_value_info("go", TensorProto.BOOL, ()),
+            picture("a"),
+        ],
+        [helper.make_tensor_value_info("goes", TensorProto.BOOL, ()), picture("b")],
+    )
+    endless = numpy_helper.from_array(np.array(2**62, np.int64), "n")
+    yes = numpy_helper.from_array(np.array(True), "c")
+    node = helper.make_node("Loop", ["n", "c", "image"], ["scores"], body=body)
+    model = built(
+        tmp_path / "m.onnx", [node], [picture("image")], [picture("scores")], initializer=[endless, yes]
+    )
+    message = refused(model, write_sidecar(tmp_path / "m.json"), limit_s=0.3)
+    assert "m.onnx takes more than 0.3 s for an image, stopped" in message
+    assert "limit=SECONDS" in message
+
+
+def test_outputs_that_are_no_numbers(tmp_path: Path) -> None:
+    sidecar = write_sidecar(tmp_path / "m.json")
+    node = helper.make_node("SequenceConstruct", ["image"], ["scores"])
+    kind = helper.make_tensor_sequence_value_info("scores", TensorProto.FLOAT, (1, 3, 6, 8))
+    assert "is list, expected numbers" in refused(
+        built(tmp_path / "m.onnx", [node], [picture("image")], [kind]), sidecar
+    )
+    texts = constant_model(tmp_path / "m.onnx", {"scores": np.full((1, 3, 6, 8), "x", object)})
+    sidecar = write_sidecar(tmp_path / "m.json", output={"kind": "semantic", "scores": "scores_out"})
+    assert "is object, expected numbers" in refused(texts, sidecar)
+    not_numbers = constant_model(tmp_path / "m.onnx", {"scores": np.full((1, 3, 6, 8), np.nan, np.float32)})
+    assert "confidence must be 0 to 1" in refused(not_numbers, sidecar)
+
+
+def test_segments_beyond_any_number_need_no_memory(tmp_path: Path) -> None:
+    outputs = {"seg": np.full((1, 6, 8), 2**60), "cls": np.array([0])}
+    model = constant_model(tmp_path / "m.onnx", outputs)
+    output = {"kind": "panoptic_segments", "segments": "seg_out", "segment_classes": "cls_out"}
+    assert f"segment {2**60} in the image has no class" in refused(
+        model, write_sidecar(tmp_path / "m.json", output=output)
+    )
+    sidecar = write_sidecar(tmp_path / "m.json", output={**output, "void_segment": 2**50})
+    assert "'void_segment' must be an integer from 0 to 65535" in refused(model, sidecar)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"size": [10**9, 10**9]}, "[width, height] in whole pixels, 1 to 8192"),
+        ({"size": [0, 6]}, "[width, height] in whole pixels, 1 to 8192"),
+        ({"size": [8, 6], "std": [1e-300, 1, 1]}, "'std' must be different from 0, at least 1e-06"),
+        ({"size": [8, 6], "scale": 1e300}, "'scale' must be at most 1e+06"),
+        ({"size": [8, 6], "mean": [0, 0, -1e300]}, "'mean' must be at most 1e+06"),
+    ],
+)
+def test_sidecar_numbers_that_no_image_has(tmp_path: Path, given: dict[str, Any], message: str) -> None:
+    sidecar = write_sidecar(tmp_path / "m.json", input={"layout": "NCHW", **given})
+    assert message in refused(colour_model(tmp_path / "m.onnx"), sidecar)

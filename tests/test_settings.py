@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 from fake_core import Config
 
-from vsgraphs.cli.settings import apply_assignments, apply_file, apply_shortcuts, parse_value
+from vsgraphs.cli.settings import apply_assignments, apply_file, apply_shortcuts
 from vsgraphs.errors import InputError
+from vsgraphs.reading import plain_value
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -49,7 +50,7 @@ def test_empty_file_changes_nothing(tmp_path: Path) -> None:
             "mapper:\n  max_features: 5\n",
             r"yaml:2: unknown option 'mapper.max_features'; did you mean 'tracker.max_f",
         ),
-        ("tracker:\n\n\n  huber_px: [1, 2]\n", r"line 4: tracker.huber_px is a list"),
+        ("tracker:\n\n\n  huber_px: [1, 2]\n", r"fast\.yaml:4: tracker.huber_px is a list"),
         ("tracker:\n  huber_px: -1\n", r"fast\.yaml:2: tracker.huber_px: -1.0 is out of range, 0 to"),
         ("tracker:\n  max_features: many\n", r"fast\.yaml:2: tracker.max_features: expected int, not 'many'"),
         ("tracker:\n  max_features: 3.5\n", r"fast\.yaml:2: tracker.max_features: expected int"),
@@ -101,5 +102,5 @@ def test_shortcuts_name_their_option() -> None:
     ],
 )
 def test_values(text: str, value: object) -> None:
-    assert parse_value(text) == value
-    assert type(parse_value(text)) is type(value)
+    assert plain_value(text) == value
+    assert type(plain_value(text)) is type(value)

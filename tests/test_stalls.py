@@ -20,13 +20,13 @@ from vsgraphs.cli.session import Session, Tally
 from vsgraphs.datasets import open_sequence, prefetch
 from vsgraphs.datasets.decode import image_size, load_depth, load_rgb
 from vsgraphs.datasets.prefetch import MOST_STUCK, Prefetcher
-from vsgraphs.errors import FrameError, RunError, StalledError
-from vsgraphs.regular_file import open_regular
+from vsgraphs.errors import FrameError, InputError, RunError, StalledError
+from vsgraphs.reading import open_regular
 from vsgraphs.segment.label_folder import _load as load_labels
 
 
 def no_file(kind: str, path: Path) -> Path:
-    if kind == "a named pipe":
+    if kind == "a pipe":
         os.mkfifo(path)
     elif kind == "a socket":
         socket.socket(socket.AF_UNIX).bind(str(path))
@@ -37,7 +37,7 @@ def no_file(kind: str, path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("kind", ["a named pipe", "a socket", "a device", "a folder"])
+@pytest.mark.parametrize("kind", ["a pipe", "a socket", "a device", "a folder"])
 def test_only_regular_files_are_images(tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)  # names of sockets are short
     path = no_file(kind, Path("image.png"))
@@ -47,7 +47,7 @@ def test_only_regular_files_are_images(tmp_path: Path, kind: str, monkeypatch: p
         lambda: image_size(path),
         lambda: load_labels(path),
     ):
-        with pytest.raises(FrameError, match=f"image.png: it is {kind}, no file"):
+        with pytest.raises(FrameError, match=f"image.png: it is {kind}"):
             load()
 
 
@@ -56,11 +56,10 @@ def test_regular_files_and_links_to_them_are_opened(tmp_path: Path) -> None:
     path.write_bytes(b"content")
     link.symlink_to(path)
     for name in (path, link):
-        with open_regular(name) as file:
+        with open_regular(name, "image") as file:
             assert file.read() == b"content"
-            assert os.get_blocking(file.fileno())
-    with pytest.raises(FileNotFoundError):
-        open_regular(tmp_path / "c")
+    with pytest.raises(InputError, match="No such file"):
+        open_regular(tmp_path / "c", "image")
 
 
 def test_a_pipe_among_the_images_is_skipped(sequence: Path, tmp_path: Path, vsgraphs: Program) -> None:
@@ -69,7 +68,7 @@ def test_a_pipe_among_the_images_is_skipped(sequence: Path, tmp_path: Path, vsgr
     os.mkfifo(depth)
     done = vsgraphs("run", sequence, "--out", tmp_path / "out", "--max-frames", 12, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert f"skipped: {depth}: it is a named pipe, no file" in done.stderr
+    assert f"skipped: cannot read image {depth}: it is a pipe" in done.stderr
     run = report(tmp_path / "out")
     assert (run["frames"], run["tracked"], run["skipped"]) == (12, 11, {"damaged": 1})
 

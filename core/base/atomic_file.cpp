@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -160,18 +161,36 @@ void require_writable(const std::filesystem::path& path) {
   ::unlink(part_of(end).c_str());
 }
 
-FileContent read_file(const std::filesystem::path& path, std::size_t most) {
+namespace {
+
+std::string kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "it is a folder; give a file";
+  if (S_ISFIFO(mode)) return "it is a pipe, not a regular file; save it as one and give that";
+  return "it is no regular file";
+}
+
+}  // namespace
+
+FileContent read_file(const std::filesystem::path& path, std::size_t limit, std::size_t most) {
   const auto fail = [&path](const std::string& why) {
     throw InputError("cannot read " + path.string() + ": " + why);
   };
+  struct stat status{};
+  if (::stat(path.c_str(), &status) != 0) fail(reason(errno));
+  if (!S_ISREG(status.st_mode)) fail(kind_of(status.st_mode));  // not opened: a device may do something then
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.ok()) fail(reason(errno));
-  struct stat status{};
   if (::fstat(file.number(), &status) != 0) fail(reason(errno));
-  if (!S_ISREG(status.st_mode)) fail("it is no ordinary file");
+  if (!S_ISREG(status.st_mode)) fail(kind_of(status.st_mode));  // it may be another one by now
   FileContent content;
   content.size = std::min(most, static_cast<std::size_t>(status.st_size));
-  content.data = std::make_unique_for_overwrite<std::byte[]>(content.size);
+  if (content.size > limit)
+    fail("it is larger than " + std::to_string(limit >> 20) + " MB; is it the right file?");
+  try {
+    content.data = std::make_unique_for_overwrite<std::byte[]>(content.size);
+  } catch (const std::bad_alloc&) {
+    fail("its " + std::to_string(content.size >> 20) + " MB find no room in memory; is it the right file?");
+  }
   for (std::size_t at = 0; at < content.size;) {
     const ssize_t n = ::read(file.number(), content.data.get() + at, content.size - at);
     if (n < 0 && errno == EINTR) continue;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -206,6 +207,14 @@ TEST_F(AtomicFile, SaysWhatCannotBeRead) {
   EXPECT_THROW(read_file(file_), InputError);
   EXPECT_THROW(read_file(folder_), InputError);
   EXPECT_THROW(read_file("/dev/zero"), InputError);
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(read_file(folder_ / "pipe"), InputError);
+  std::ofstream(file_).close();
+  std::filesystem::resize_file(file_, std::uintmax_t{1} << 42);  // of holes
+  EXPECT_THROW(read_file(file_), InputError);
+  std::filesystem::resize_file(file_, 6);
+  EXPECT_EQ(read_file(file_, 6).size, 6U);
+  EXPECT_THROW(read_file(file_, 5), InputError);
 }
 
 }  // namespace

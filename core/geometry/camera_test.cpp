@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <string>
-
-#include "core/base/check.h"
-
 namespace vsgraphs {
 namespace {
 
@@ -60,30 +55,6 @@ TEST(Camera, DepthNoiseIsThePublishedCurve) {
   const DepthNoise noise;
   EXPECT_NEAR(noise.sigma_m(0.4), 0.0012, 1e-12);
   EXPECT_NEAR(noise.sigma_m(2.4), 0.0012 + 0.0019 * 4, 1e-12);
-}
-
-TEST(Camera, ValidateNamesTheField) {
-  const auto message = [](auto change) -> std::string {
-    Camera camera;
-    change(camera);
-    try {
-      camera.validate();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(message([](Camera&) {}), "");
-  EXPECT_NE(message([](Camera& c) { c.fx = 0; }).find("fx"), std::string::npos);
-  EXPECT_NE(message([](Camera& c) { c.fy = std::numeric_limits<double>::quiet_NaN(); }).find("fy"),
-            std::string::npos);
-  EXPECT_NE(message([](Camera& c) { c.width = 3; }).find("width"), std::string::npos);
-  EXPECT_NE(message([](Camera& c) { c.cx = 900; }).find("principal point"), std::string::npos);
-  EXPECT_NE(message([](Camera& c) { c.depth_max_m = 0.1; }).find("depth_max_m"), std::string::npos);
-  EXPECT_NE(message([](Camera& c) {
-              c.distortion[2] = std::numeric_limits<double>::infinity();
-            }).find("distortion"),
-            std::string::npos);
 }
 
 }  // namespace

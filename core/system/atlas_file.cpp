@@ -93,7 +93,7 @@ std::uint64_t save_atlas(const std::filesystem::path& path, const SavedAtlas& at
 
 std::optional<std::uint64_t> atlas_revision(const std::filesystem::path& path) {
   try {
-    const FileContent beginning = read_file(path, identity_bytes);
+    const FileContent beginning = read_file(path, SIZE_MAX, identity_bytes);
     const auto bytes = beginning.bytes();
     if (bytes.size() < identity_bytes ||
         std::memcmp(bytes.data(), atlas_kind.magic.data(), atlas_kind.magic.size()) != 0)

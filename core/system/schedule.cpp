@@ -2,13 +2,13 @@
 
 #include <array>
 #include <bit>
-#include <cstdio>
-#include <fstream>
 #include <iomanip>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <utility>
 
+#include "core/base/atomic_file.h"
 #include "core/base/check.h"
 
 namespace vsgraphs {
@@ -31,6 +31,8 @@ constexpr std::array<std::pair<const char*, EditEvent::Kind>, 13> kinds = {{
     {"settle", EditEvent::Kind::settle},
 }};
 
+constexpr std::size_t largest_file = std::size_t{1} << 30;
+
 std::optional<EditEvent::Kind> kind_named(const std::string& name) {
   for (const auto& [text, kind] : kinds) {
     if (name == text) return kind;
@@ -43,8 +45,8 @@ const char* name_of(EditEvent::Kind kind) { return kinds[static_cast<std::size_t
 }  // namespace
 
 Schedule Schedule::read(const std::string& path) {
-  std::ifstream file(path);
-  require_input(file.is_open(), path + ": cannot be opened; give a file written by system.schedule_out");
+  const FileContent content = read_file(path, largest_file);
+  std::istringstream file(std::string(reinterpret_cast<const char*>(content.data.get()), content.size));
   Schedule schedule;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -76,28 +78,18 @@ Schedule Schedule::read(const std::string& path) {
 }
 
 void Schedule::write(const std::string& path) const {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream file(temporary);
-    for (const FrameEvent& e : frames) {
-      file << "frame " << e.frame << ' ' << std::hex << std::bit_cast<std::uint64_t>(e.timestamp_s)
-           << std::dec << ' ' << e.version << '\n';
-    }
-    for (const EditEvent& e : edits) {
-      file << name_of(e.kind) << ' ' << e.frame;
-      if (e.iterates()) file << ' ' << e.iterations;
-      file << ' ' << std::hex << e.hash << std::dec << '\n';
-    }
-    file.flush();
-    if (!file) {
-      std::remove(temporary.c_str());
-      throw InputError(path + ": cannot be written; check the folder and the space left");
-    }
+  std::ostringstream out;
+  for (const FrameEvent& e : frames) {
+    out << "frame " << e.frame << ' ' << std::hex << std::bit_cast<std::uint64_t>(e.timestamp_s) << std::dec
+        << ' ' << e.version << '\n';
   }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw InputError(path + ": cannot be written; is there a folder of that name?");
+  for (const EditEvent& e : edits) {
+    out << name_of(e.kind) << ' ' << e.frame;
+    if (e.iterates()) out << ' ' << e.iterations;
+    out << ' ' << std::hex << e.hash << std::dec << '\n';
   }
+  const std::string text = out.str();
+  write_file_atomically(path, {std::as_bytes(std::span(text))});
 }
 
 }  // namespace vsgraphs

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <bit>
 #include <cmath>
@@ -128,7 +129,7 @@ TEST_F(ScheduleTest, FilesThatAreNoScheduleAreNamed) {
     Schedule::read(path("missing.txt"));
     FAIL() << "a missing file was read";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), StartsWith(path("missing.txt") + ": cannot be opened"));
+    EXPECT_THAT(error.what(), StartsWith("cannot read " + path("missing.txt")));
   }
 }
 
@@ -137,7 +138,7 @@ TEST_F(ScheduleTest, WhereNothingCanBeWrittenTheFileIsNamed) {
     some_schedule().write(path("no_such_folder/schedule.txt"));
     FAIL() << "written into a folder that does not exist";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), StartsWith(path("no_such_folder/schedule.txt") + ": cannot be written"));
+    EXPECT_THAT(error.what(), StartsWith("cannot write " + path("no_such_folder/schedule.txt")));
   }
 }
 
@@ -145,6 +146,14 @@ TEST_F(ScheduleTest, AFolderInTheWayLeavesNoHalfFile) {
   std::filesystem::create_directories(path("schedule.txt/inside"));
   EXPECT_THROW(some_schedule().write(path("schedule.txt")), InputError);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(ScheduleTest, APipeIsNeitherWaitedForNorReplaced) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  EXPECT_THROW(Schedule::read(path("pipe")), InputError);
+  EXPECT_THROW(some_schedule().write(path("pipe")), InputError);
+  EXPECT_TRUE(std::filesystem::is_fifo(path("pipe")));
+  EXPECT_THROW(Schedule::read("/dev/zero"), InputError);
 }
 
 }  // namespace

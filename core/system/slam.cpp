@@ -1,5 +1,7 @@
 #include "core/system/slam.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -62,7 +64,8 @@ std::vector<TimedPose> poses_in(const Map& map, const FrameRecords::View& record
 Slam::Slam(const Config& config, const Camera& camera) : Slam(config, camera, AtlasState{}) {}
 
 Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known)
-    : config_(config),
+    : process_(::getpid()),
+      config_(config),
       camera_(camera),
       executor_(make_executor(config, camera, known)),
       loaded_(known.loaded),
@@ -71,9 +74,17 @@ Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known)
       lost_(has_keyframes(known)),
       starts_lost_(lost_) {}
 
-Slam::~Slam() = default;
+Slam::~Slam() {
+  if (::getpid() != process_) static_cast<void>(executor_.release());
+}
+
+void Slam::require_own_process() const {
+  if (::getpid() != process_)
+    throw RunError("this Slam belongs to the process that made it; make a new one after fork()");
+}
 
 TrackedFrame Slam::track(RgbdFrame frame) {
+  require_own_process();
   const std::unique_lock lock(frames_mutex_, std::try_to_lock);
   require_input(lock.owns_lock(),
                 "track() was called while another thread was in it; frames come one by one");
@@ -123,19 +134,25 @@ void Slam::note_status(const TrackedFrame& frame) {
 }
 
 void Slam::add_segmentation(std::int64_t frame_index, const Segmentation& segmentation) {
+  require_own_process();
   auto labels = std::make_shared<const LabelGrid>(sample_labels(segmentation, camera_));
   if (!finished_) executor_->label(frame_index, std::move(labels));
 }
 
 void Slam::add_markers(std::int64_t frame_index, MarkerDetections detections) {
+  require_own_process();
   check_markers(detections);
   if (!finished_)
     executor_->mark(frame_index, std::make_shared<const MarkerDetections>(std::move(detections)));
 }
 
-Snapshot Slam::snapshot() const { return executor_->content().snapshot; }
+Snapshot Slam::snapshot() const {
+  require_own_process();
+  return executor_->content().snapshot;
+}
 
 AtlasState Slam::atlas_state() const {
+  require_own_process();
   const SnapshotCell::Content content = executor_->content();
   AtlasState state{*content.dormant, loaded_};
   if (content.snapshot->keyframes().size() > 0)
@@ -143,15 +160,20 @@ AtlasState Slam::atlas_state() const {
   return state;
 }
 
-std::int64_t Slam::backlog() const { return executor_->backlog(); }
+std::int64_t Slam::backlog() const {
+  require_own_process();
+  return executor_->backlog();
+}
 
 std::vector<const SpanRecorder*> Slam::spans() const {
+  require_own_process();
   return ended_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
 }
 
 void Slam::stop() { executor_->stop(); }
 
 void Slam::finish() {
+  require_own_process();
   const std::lock_guard lock(frames_mutex_);
   if (finished_) return;
   finished_ = true;
@@ -168,6 +190,7 @@ void Slam::finish() {
 }
 
 std::vector<TimedPose> Slam::trajectory() const {
+  require_own_process();
   const FrameRecords::View records = records_.view();
   return poses_in(*map_given_out(records), records);
 }
@@ -187,6 +210,7 @@ Snapshot Slam::map_given_out(const FrameRecords::View& records) const {
 }
 
 RunStatistics Slam::statistics() const {
+  require_own_process();
   const SnapshotCell::Content content = executor_->content();
   RunStatistics s;
   s.frames = frames_;

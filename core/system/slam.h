@@ -38,6 +38,8 @@ struct RunStatistics {
   std::vector<std::string> warnings;
 };
 
+// Belongs to the process that made it: a forked child has its locks and not its threads. There everything throws RunError, and
+// the destructor leaves to the system what it cannot end.
 class Slam {
  public:
   // Throws InputError if configuration or camera make no sense, or a schedule to replay cannot be read.
@@ -90,6 +92,7 @@ class Slam {
   std::vector<const SpanRecorder*> spans() const;
 
  private:
+  void require_own_process() const;
   void note_status(const TrackedFrame& frame);
   void keep_record(const TrackedFrame& frame);
   void warn(std::string line);
@@ -98,6 +101,7 @@ class Slam {
 
   // Held while a frame is tracked and while the run ends: a second caller of track() is told so. Readers never take it.
   std::mutex frames_mutex_;
+  const int process_;
   Config config_;
   Camera camera_;
   std::unique_ptr<Executor> executor_;

@@ -4,9 +4,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -253,6 +256,45 @@ TEST(Slam, BadTimestampsChangeNothing) {
   EXPECT_THROW(run.track(0), InputError);
   EXPECT_TRUE(has_pose(run.track(2).status));
   EXPECT_EQ(run.slam().statistics().frames, 3);
+}
+
+// What a forked child makes of its parent's Slam: 0 if everything is refused and its end comes at once.
+int use_and_destroy(std::unique_ptr<ShortRun> run) {
+  ::alarm(20);  // what hangs is ended
+  int accepted = 0;
+  const auto refused = [&accepted](auto call) {
+    try {
+      call();
+      ++accepted;
+    } catch (const RunError&) {
+    }
+  };
+  Slam& slam = run->slam();
+  refused([&] { run->track(3); });
+  refused([&] { slam.snapshot(); });
+  refused([&] { slam.atlas_state(); });
+  refused([&] { slam.trajectory(); });
+  refused([&] { slam.statistics(); });
+  refused([&] { slam.backlog(); });
+  refused([&] { slam.spans(); });
+  refused([&] { slam.add_markers(0, {}); });
+  refused([&] { slam.finish(); });
+  run.reset();
+  return accepted;
+}
+
+TEST(Slam, AForkedChildIsToldAndEnds) {
+  for (const char* execution : {"threaded", "serial"}) {
+    auto run = std::make_unique<ShortRun>(configured(execution));
+    for (int i = 0; i < 3; ++i) run->track(i);
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(use_and_destroy(std::move(run)));
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status)) << execution << ": ended by signal " << WTERMSIG(status);
+    EXPECT_EQ(WEXITSTATUS(status), 0) << execution;
+    EXPECT_TRUE(has_pose(run->track(3).status)) << "the parent goes on";
+  }
 }
 
 }  // namespace

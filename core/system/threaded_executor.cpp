@@ -2,6 +2,7 @@
 #include <chrono>
 #include <deque>
 #include <exception>
+#include <new>
 #include <thread>
 
 #include "core/base/bounded_queue.h"
@@ -100,6 +101,9 @@ class ThreadedExecutor : public Executor {
       }
       adjust_to_the_end();
       owner_.end_run(stopped);
+    } catch (const std::bad_alloc&) {
+      failure_ = std::current_exception();  // says what it is
+      requests_.close();
     } catch (const std::exception& error) {
       // Whatever it was, it was not the frame the tracker is at: it must not look like bad input of that frame.
       failure_ = std::make_exception_ptr(std::runtime_error(std::string("mapping failed: ") + error.what()));

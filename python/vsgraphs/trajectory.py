@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_text, shown
 
 Array = npt.NDArray[np.float64]
 
@@ -120,10 +121,7 @@ def trajectory_from_matrices(timestamps: Array, poses: Array, source: str) -> Tr
 
 def read_number_rows(path: Path, columns: int, what: str) -> Array:
     """Text file of rows of numbers, blanks or commas between them -> (N, columns)."""
-    try:
-        text = path.read_text(encoding="utf-8-sig", errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    text = read_text(path, "trajectory", LARGE, damaged=True)
     rows: list[list[float]] = []
     for number, line in enumerate(text.splitlines(), 1):
         fields = line.split("#", 1)[0].replace(",", " ").split()
@@ -134,7 +132,7 @@ def read_number_rows(path: Path, columns: int, what: str) -> Array:
         try:
             rows.append([float(value) for value in fields[:columns]])
         except ValueError:
-            raise InputError(f"{path}:{number}: not a number in {line.strip()[:60]!r}") from None
+            raise InputError(f"{path}:{number}: not a number in {shown(line.strip())}") from None
     if not rows:
         raise InputError(f"{path} holds no pose; expected lines of {columns} numbers ({what})")
     return np.array(rows, dtype=np.float64)

@@ -17,16 +17,21 @@ def main() -> None:
     # numpy's linear algebra would start a thread per core, which nothing here uses. Before numpy is imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from vsgraphs.cli.failures import told
+    from vsgraphs.cli.streams import flush_output, prepare_streams
 
+    prepare_streams()
     try:
-        with told():
-            from vsgraphs.compiled import check_processor
+        try:
+            with told():
+                from vsgraphs.compiled import check_processor
 
-            # Before numpy, which an old processor does not run either, and says so less kindly.
-            check_processor()
-            from vsgraphs.cli.app import app
+                # Before numpy, which an old processor does not run either, and says so less kindly.
+                check_processor()
+                from vsgraphs.cli.app import app
 
-            app()
+                app()
+        finally:
+            flush_output()
         sys.exit(0)
     finally:
         let_die()

@@ -119,7 +119,7 @@ def run(
         Path | None, typer.Option(help="Record what --view would show in this .rrd file.")
     ] = None,
     web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
-    view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+    view_port: Annotated[int | None, typer.Option(min=1, max=65534, help=_VIEW_PORT)] = None,
     view_address: Annotated[str | None, typer.Option(metavar="IP", help=_VIEW_ADDRESS)] = None,
     save_atlas: Annotated[
         Path | None, typer.Option(help="Save all maps in this file at the end, Ctrl-C included.")
@@ -136,6 +136,7 @@ def run(
         typer.Option(
             metavar="SECONDS",
             min=0.1,
+            max=86400,
             help="Save this often meanwhile too, in --save-atlas or atlas.vsg in --out.",
         ),
     ] = None,
@@ -253,7 +254,7 @@ def view(
     record: Annotated[
         Path | None, typer.Option(help="Write what is shown to this .rrd file; no window opens.")
     ] = None,
-    view_port: Annotated[int | None, typer.Option(help=_VIEW_PORT)] = None,
+    view_port: Annotated[int | None, typer.Option(min=1, max=65534, help=_VIEW_PORT)] = None,
     view_address: Annotated[str | None, typer.Option(metavar="IP", help=_VIEW_ADDRESS)] = None,
 ) -> None:
     """Open a finished run: map, walls, rooms and the graph above them."""

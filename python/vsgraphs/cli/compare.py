@@ -14,6 +14,7 @@ from vsgraphs.errors import InputError
 from vsgraphs.evaluate import Evaluation, evaluate
 from vsgraphs.evaluate.errors import RelativeError, Statistics
 from vsgraphs.export.atomic import write_atomically
+from vsgraphs.reading import read_head, read_json
 from vsgraphs.trajectory import Array, Trajectory, read_tum_trajectory
 
 _PLOTS = (".png", ".svg")
@@ -125,18 +126,15 @@ def _completion_of_run(trajectory: Path) -> float | None:
 
 def _run_report(trajectory: Path) -> dict[str, Any]:
     try:
-        report = json.loads((trajectory.parent / "run.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        report = read_json(trajectory.parent / "run.json", "report")
+    except InputError:
         return {}
     return report if isinstance(report, dict) else {}
 
 
 def _columns(path: Path) -> int:
-    try:
-        with path.open(encoding="utf-8", errors="replace") as lines:
-            return next((len(line.split()) for line in lines if line.strip() and line[0] != "#"), 0)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    lines = read_head(path, "ground truth").splitlines()
+    return next((len(line.split()) for line in lines if line.strip() and line[0] != "#"), 0)
 
 
 def _print(result: Evaluation) -> None:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import sys
 from collections.abc import Iterator
 
 from vsgraphs.errors import InputError, RunError
+from vsgraphs.reading import shortened
 
 EXIT_MISTAKE = 2  # something the user can cure
 EXIT_DEFECT = 1  # something only we can cure
 EXIT_INTERRUPTED = 130
+_LONGEST = 800  # characters of a line
+_NO_ROOM = ("can't start new thread", "failed to map segment", "annot allocate memory")
 
 _debug = False
 
@@ -28,7 +32,7 @@ def told() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        _say("interrupted")
+        say("interrupted")
         sys.exit(EXIT_INTERRUPTED)
     except BrokenPipeError:  # `vsgraphs config | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -37,9 +41,9 @@ def told() -> Iterator[None]:
         if _debug:
             raise
         if is_mistake(error):
-            _say(f"error: {error}")
+            say(f"error: {line_of(error)}")
             sys.exit(EXIT_MISTAKE)
-        _say(
+        say(
             f"error: unexpected {type(error).__name__}: {' '.join(str(error).split())} "
             "(a defect: please report it with the output of the same command under `vsgraphs --debug`)"
         )
@@ -48,12 +52,39 @@ def told() -> Iterator[None]:
 
 def is_mistake(error: Exception) -> bool:
     """Whether the user can cure it: our InputError, the compiled module's, an unusable machine or file."""
-    if isinstance(error, InputError | RunError | ImportError | OSError):
+    if isinstance(error, InputError | RunError | ImportError | OSError) or _is_want_of_memory(error):
         return True
     compiled = getattr(sys.modules.get("vsgraphs._core"), "InputError", InputError)
     return isinstance(error, compiled)
 
 
-def _say(line: str) -> None:
+def line_of(error: Exception) -> str:
+    """What there is to say of an error, in one line."""
+    if _is_want_of_memory(error):
+        return (
+            "not enough memory: close other programs, raise `ulimit -v`, "
+            "or give smaller images or fewer frames (--max-frames)"
+        )
+    if isinstance(error, OSError) and error.strerror:
+        if error.filename is not None:
+            return f"{shortened(str(error.filename), 300)}: {error.strerror}"
+        return f"cannot read or write (the standard output?): {error.strerror}"
+    return str(error) if isinstance(error, InputError) else " ".join(str(error).split())
+
+
+def say(line: str) -> None:
+    """One line on stderr, whatever it holds."""
     with contextlib.suppress(OSError):
-        print(line, file=sys.stderr, flush=True)
+        print(shortened(line, _LONGEST), file=sys.stderr, flush=True)
+
+
+def _is_want_of_memory(error: BaseException | None) -> bool:
+    """Whether that is what is behind it: libraries and threads that find no room say so in their own ways."""
+    for _ in range(5):
+        if error is None:
+            return False
+        no_room = isinstance(error, OSError) and error.errno == errno.ENOMEM
+        if isinstance(error, MemoryError) or no_room or any(sign in str(error) for sign in _NO_ROOM):
+            return True
+        error = error.__cause__ or error.__context__
+    return False

@@ -4,69 +4,78 @@ key.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import YamlNode, plain_value, read_yaml, shortened, shown
 
 Value = bool | int | float | str
 
 
 def apply_file(config: Any, path: Path) -> None:
     """Sets every option of a YAML file (nested mappings or dotted keys) on a `vsgraphs.Config`."""
-    for key, value, line in _leaves(_compose(path), ""):
-        _set(config, key, value, f"{path}:{line}")
+    node = read_yaml(path, "configuration")
+    if node is None:
+        return
+    seen: dict[str, int] = {}
+    for key, leaf, line in _leaves(node, "", node.line, str(path)):
+        if key in seen:
+            raise InputError(f"{path}:{line}: {shown(key)} is there twice, first in line {seen[key]}")
+        seen[key] = line
+        _set(config, key, str(leaf.value), f"{path}:{line}", quoted=leaf.quoted)
 
 
 def apply_assignments(config: Any, assignments: list[str]) -> None:
-    """Sets `key=value` options given on the command line; values are read as YAML reads them."""
+    """Sets `key=value` options given on the command line; values are read as in a file."""
     for assignment in assignments:
         key, equals, text = assignment.partition("=")
         if not equals or not key.strip():
-            raise InputError(f"--set {assignment}: expected KEY=VALUE, e.g. --set tracker.max_features=1200")
-        _set(config, key.strip(), parse_value(text.strip()), f"--set {assignment}")
+            raise InputError(
+                f"--set {shortened(assignment)}: expected KEY=VALUE, e.g. --set tracker.max_features=1200"
+            )
+        _set(config, key.strip(), text.strip(), f"--set {shortened(assignment)}")
 
 
 def apply_shortcuts(config: Any, shortcuts: dict[str, Value]) -> None:
     """Sets options that have a command-line option of their own (--seed, --execution, ...)."""
     for key, value in shortcuts.items():
-        _set(config, key, value, f"--{key.partition('.')[2].replace('_', '-')} {value}")
+        _set(config, key, value, f"--{key.partition('.')[2].replace('_', '-')} {shortened(str(value))}")
 
 
-def parse_value(text: str) -> Value:
-    """'true' -> True, '3' -> 3, '1e-3' -> 0.001, anything else stays text."""
-    lowered = text.lower()
-    if lowered in ("true", "false"):
-        return lowered == "true"
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return text
-
-
-def _set(config: Any, key: str, value: Value, where: str) -> None:
+def _set(config: Any, key: str, value: Value, where: str, *, quoted: bool = False) -> None:
     known = config.keys()
     if key not in known:
         raise InputError(f"{where}: {unknown_key(key, known)}")
+    current = config.get(key)
+    if isinstance(value, str) and not isinstance(current, str) and not quoted:
+        value = plain_value(value)
+    if isinstance(value, str) and not _is_text(value):
+        raise InputError(f"{where}: holds bytes that are no text (UTF-8); give the file another name")
     try:
-        config.set(key, _as_expected(value, config.get(key)))
+        config.set(key, _as_expected(value, current))
     except ValueError as error:  # the core's InputError: type or range
         raise InputError(f"{where}: {error}") from None
 
 
+def _is_text(value: str) -> bool:
+    try:
+        value.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 def _as_expected(value: Value, current: Value) -> Value:
-    """An int where a float is expected is one; a number where a text is expected (a file called 7) is
-    text.
-    """
-    if isinstance(current, float) and isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    if isinstance(current, str) and not isinstance(value, str):
-        return str(value)
-    return value
+    """An int where a float is expected is one; a whole number that no option holds is out of any range."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        return value
+    if not -(2**63) <= value < 2**63:
+        return math.inf if value > 0 else -math.inf
+    return float(value) if isinstance(current, float) else value
 
 
 def unknown_key(key: str, known: list[str]) -> str:
@@ -77,43 +86,19 @@ def unknown_key(key: str, known: list[str]) -> str:
         near = get_close_matches(last, [k.rpartition(".")[2] for k in known], n=1, cutoff=0.6)
         near = [k for k in known if near and k.rpartition(".")[2] == near[0]][:1]
     hint = f"did you mean '{near[0]}'?" if near else "`vsgraphs config` lists all"
-    return f"unknown option '{key}'; {hint}"
+    return f"unknown option {shown(key)}; {hint}"
 
 
-def _compose(path: Path) -> Any:
-    import yaml
-
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"cannot read configuration {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"configuration {path} is not text; expected YAML") from None
-    try:
-        return yaml.compose(text, Loader=yaml.SafeLoader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f":{mark.line + 1}" if mark else ""
-        raise InputError(
-            f"{path}{where}: not valid YAML ({getattr(error, 'problem', None) or error})"
-        ) from None
-
-
-def _leaves(node: Any, prefix: str) -> Iterator[tuple[str, Value, int]]:
-    """(dotted key, value, line) of every leaf of a YAML document's node tree, which still knows its lines."""
-    import yaml
-
-    if node is None:
-        return
-    line = node.start_mark.line + 1
-    if isinstance(node, yaml.MappingNode):
-        for key_node, value_node in node.value:
-            key = f"{prefix}.{key_node.value}" if prefix else str(key_node.value)
-            yield from _leaves(value_node, key)
-    elif isinstance(node, yaml.ScalarNode):
-        if not prefix:
-            raise InputError(f"{node.start_mark.name}:{line}: expected lines like 'tracker:' or 'key: value'")
-        quoted = node.style in ("'", '"')
-        yield prefix, node.value if quoted else parse_value(node.value), line
+def _leaves(node: YamlNode, prefix: str, line: int, source: str) -> Iterator[tuple[str, YamlNode, int]]:
+    """(dotted key, its word, line) of every leaf of a file."""
+    if isinstance(node.value, dict):
+        for key, value in node.value.items():
+            dotted = f"{prefix}.{key}" if prefix else key
+            yield from _leaves(value, dotted, node.lines.get(key, value.line), source)
+    elif isinstance(node.value, list):
+        what = shortened(prefix) if prefix else "the document"
+        raise InputError(f"{source}:{line}: {what} is a list; options are single values")
+    elif not prefix:
+        raise InputError(f"{source}:{line}: expected lines like 'tracker:' or 'key: value'")
     else:
-        raise InputError(f"line {line}: {prefix or 'the document'} is a list; options are single values")
+        yield prefix, node, line

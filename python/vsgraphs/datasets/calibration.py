@@ -6,6 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shown
+
+_LARGEST_PX = 8192
+_BESIDE = 0.25  # of the image: a part cut out of a larger one may lie beside its principal point
 
 
 @dataclass(frozen=True)
@@ -32,38 +36,51 @@ class Calibration:
     origin: str = "built in"
 
     def to_core(self) -> Any:
-        """The `vsgraphs.Camera` of these numbers (loads the compiled module)."""
+        """The `vsgraphs.Camera` of these numbers (loads the compiled module). Raises InputError for a camera
+        that cannot be.
+        """
         from vsgraphs.compiled import core
 
         given = {"depth_noise": self.depth_noise, "depth_alignment_m": self.depth_alignment_m}
-        return core().Camera(
-            self.width,
-            self.height,
-            self.fx,
-            self.fy,
-            self.cx,
-            self.cy,
-            distortion=self.distortion,
-            fps=self.fps,
-            depth_scale=self.depth_scale,
-            depth_min_m=self.depth_min_m,
-            depth_max_m=self.depth_max_m,
-            invalid_depth=list(self.invalid_depth),
-            **{key: value for key, value in given.items() if value is not None},
-        )
+        try:
+            return core().Camera(
+                self.width,
+                self.height,
+                self.fx,
+                self.fy,
+                self.cx,
+                self.cy,
+                distortion=self.distortion,
+                fps=self.fps,
+                depth_scale=self.depth_scale,
+                depth_min_m=self.depth_min_m,
+                depth_max_m=self.depth_max_m,
+                invalid_depth=list(self.invalid_depth),
+                **{key: value for key, value in given.items() if value is not None},
+            )
+        except ValueError as error:
+            raise InputError(f"{self.origin}: {error}") from None
 
 
 def check_calibration(camera: Calibration, source: str) -> None:
-    """Raises InputError naming the first field that makes no sense."""
+    """Raises InputError naming the first field that makes no sense at all. All ranges are the core's, which
+    is loaded later: see `Calibration.to_core`.
+    """
     for key in ("width", "height", "fx", "fy", "fps", "depth_scale", "depth_max_m"):
         if not getattr(camera, key) > 0:
             raise InputError(f"{source}: {key} is {getattr(camera, key)}, must be positive")
-    if camera.width > 16384 or camera.height > 16384:
-        raise InputError(f"{source}: {camera.width}x{camera.height} pixels is larger than any camera")
-    if not (0 <= camera.cx < camera.width and 0 <= camera.cy < camera.height):
-        raise InputError(f"{source}: cx, cy = {camera.cx}, {camera.cy} lies outside the image")
-    if not 0 <= camera.depth_min_m < camera.depth_max_m:
+    if max(camera.width, camera.height) > _LARGEST_PX:
         raise InputError(
-            f"{source}: depth_min {camera.depth_min_m} m must be at least 0 and below depth_max "
+            f"{source}: {shown(camera.width)}x{shown(camera.height)} pixels, larger than any camera's"
+        )
+    beside = _BESIDE * camera.width, _BESIDE * camera.height
+    if not (
+        -beside[0] <= camera.cx <= camera.width + beside[0]
+        and -beside[1] <= camera.cy <= camera.height + beside[1]
+    ):
+        raise InputError(f"{source}: cx, cy = {camera.cx}, {camera.cy} lies outside the image")
+    if not 0 < camera.depth_min_m < camera.depth_max_m:
+        raise InputError(
+            f"{source}: depth_min {camera.depth_min_m} m must be above 0 and below depth_max "
             f"{camera.depth_max_m} m"
         )

@@ -16,6 +16,7 @@ from typing import Any
 
 from vsgraphs.datasets.calibration import Calibration, check_calibration
 from vsgraphs.errors import InputError
+from vsgraphs.reading import YAML_LIMIT, parse_yaml, read_text, shortened, shown
 
 _INTEGERS = ("width", "height")
 _REQUIRED = ("width", "height", "fx", "fy", "cx", "cy")
@@ -96,29 +97,13 @@ def read_camera_file(path: Path, *, y_up: bool = False) -> tuple[Calibration, li
 
 
 def _parse(path: Path) -> dict[str, Any]:
-    import yaml
-
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"cannot read camera file {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(
-            f"camera file {path} is not text; expected YAML with fx, fy, cx, cy, width, height"
-        ) from None
-    try:
-        values = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f":{mark.line + 1}" if mark else ""
-        if text.startswith("%YAML"):
-            raise InputError(
-                f"{path}: an OpenCV camera file; write plain YAML with fx, fy, cx, cy, ..."
-            ) from None
-        raise InputError(f"{path}{where}: not valid YAML ({getattr(error, 'problem', error)})") from None
-    if not isinstance(values, dict):
+    text = read_text(path, "camera file", YAML_LIMIT, expected="YAML with fx, fy, cx, cy, width, height")
+    if text.startswith("%YAML:"):
+        raise InputError(f"{path}: an OpenCV camera file; write plain YAML with fx, fy, cx, cy, ...")
+    node = parse_yaml(text, str(path))
+    if node is None or not isinstance(node.value, dict):
         raise InputError(f"{path}: expected YAML lines like 'fx: 525.0'")
-    return {str(key): value for key, value in values.items()}
+    return {key: value.plain() for key, value in node.value.items()}
 
 
 def _check_keys(path: Path, values: dict[str, Any]) -> list[str]:
@@ -128,9 +113,9 @@ def _check_keys(path: Path, values: dict[str, Any]) -> list[str]:
             continue
         nearest = get_close_matches(key.lower(), _KNOWN, n=1, cutoff=0.75)
         if nearest:
-            raise InputError(f"{path}: unknown key '{key}'; did you mean '{nearest[0]}'?")
+            raise InputError(f"{path}: unknown key {shown(key)}; did you mean '{nearest[0]}'?")
         ignored.append(key)
-    return [f"{path.name}: keys not used: {', '.join(ignored)}"] if ignored else []
+    return [f"{path.name}: keys not used: {shortened(', '.join(ignored), 200)}"] if ignored else []
 
 
 def _number(path: Path, key: str, value: Any) -> float:
@@ -138,15 +123,15 @@ def _number(path: Path, key: str, value: Any) -> float:
         try:
             value = float(value)
         except ValueError:
-            raise InputError(f"{path}: {key} is {value!r}, expected a number") from None
+            raise InputError(f"{path}: {key} is {shown(value)}, expected a number") from None
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InputError(f"{path}: {key} is {value!r}, expected a finite number")
+        raise InputError(f"{path}: {key} is {shown(value)}, expected a finite number")
     return float(value)
 
 
 def _numbers(path: Path, key: str, value: Any) -> list[float]:
     if not isinstance(value, list | tuple):
-        raise InputError(f"{path}: {key} is {value!r}, expected a list of numbers")
+        raise InputError(f"{path}: {key} is {shown(value)}, expected a list of numbers")
     return [_number(path, key, item) for item in value]
 
 
@@ -166,7 +151,7 @@ def _distortion(path: Path, values: dict[str, Any]) -> tuple[float, float, float
 def _invalid_depth(path: Path, value: Any) -> tuple[int, ...]:
     given = _numbers(path, "invalid_depth", value if isinstance(value, list | tuple) else [value])
     if any(item != int(item) or not 0 <= item <= 65535 for item in given):
-        raise InputError(f"{path}: invalid_depth {value!r} must hold whole numbers from 0 to 65535")
+        raise InputError(f"{path}: invalid_depth {shown(value)} must hold whole numbers from 0 to 65535")
     return tuple(int(item) for item in given)
 
 

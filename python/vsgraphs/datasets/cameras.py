@@ -9,6 +9,7 @@ NICE-SLAM. Redwood: the PrimeSense camera its page names (also Open3D's PrimeSen
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
@@ -110,7 +111,7 @@ def choose_camera(
     if given is not None:
         return _given_camera(str(given), y_up=y_up)
     for name in ("camera.yaml", "camera.yml"):
-        if (folder / name).is_file():
+        if os.path.lexists(folder / name):  # what is there and cannot be read is told
             return read_camera_file(folder / name, y_up=y_up)
     known = (default() if callable(default) else default) or camera_from_folder_name(folder)
     if known is None:
@@ -127,6 +128,8 @@ def _given_camera(given: str, *, y_up: bool) -> tuple[Calibration, list[str]]:
     known = named_camera(given)
     if known is not None:
         return known, []
+    if Path(given).exists():
+        return read_camera_file(Path(given), y_up=y_up)  # says why not
     near = get_close_matches(given.lower(), CAMERAS, n=1, cutoff=0.5)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     raise InputError(f"camera '{given}' is neither a file nor one of {', '.join(sorted(CAMERAS))}{hint}")

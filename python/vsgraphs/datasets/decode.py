@@ -20,8 +20,8 @@ from PIL import (
     PngImagePlugin,  # noqa: F401
 )
 
-from vsgraphs.errors import FrameError
-from vsgraphs.regular_file import IrregularFileError, open_regular
+from vsgraphs.errors import FrameError, InputError
+from vsgraphs.reading import open_regular
 
 _FORMATS = ("JPEG", "PNG")
 _DEPTH_MODES = ("I;16", "I;16L", "I;16B", "I")
@@ -80,13 +80,13 @@ def _inside(pixels: int, file_pixels: int, scale: float, offset: float) -> tuple
 
 def image_size(path: Path) -> tuple[int, int]:
     """(width, height) from an image's header. Raises FrameError: missing or not an image."""
+    if not path.exists():
+        raise FrameError(f"{path} is missing")
     try:
-        with open_regular(path) as file, Image.open(file, formats=_FORMATS) as image:
+        with open_regular(path, "image") as file, Image.open(file, formats=_FORMATS) as image:
             return image.size
-    except FileNotFoundError:
-        raise FrameError(f"{path} is missing") from None
-    except IrregularFileError as error:
-        raise FrameError(f"{path}: {error.strerror}") from None
+    except InputError as error:
+        raise FrameError(str(error)) from None
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         raise FrameError(f"{path} is damaged: {_short(error)}") from None
 
@@ -105,15 +105,15 @@ def load_depth(path: Path, size: tuple[int, int]) -> npt.NDArray[np.uint16]:
 
 
 def _open(path: Path, size: tuple[int, int]) -> Image.Image:
+    if not path.exists():
+        raise FrameError(f"{path} is missing")
     try:
-        with open_regular(path) as file, Image.open(file, formats=_FORMATS) as image:
+        with open_regular(path, "image") as file, Image.open(file, formats=_FORMATS) as image:
             given = image.size  # known from the header: an image of a wrong size is never decoded
             if given == size:
                 image.load()
-    except FileNotFoundError:
-        raise FrameError(f"{path} is missing") from None
-    except IrregularFileError as error:
-        raise FrameError(f"{path}: {error.strerror}") from None
+    except InputError as error:
+        raise FrameError(str(error)) from None
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         raise FrameError(f"{path} is damaged: {_short(error)}") from None
     if given != size:

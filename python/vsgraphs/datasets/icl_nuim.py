@@ -22,6 +22,7 @@ from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_head
 from vsgraphs.trajectory import Trajectory, read_tum_trajectory
 
 NAME = "ICL-NUIM"
@@ -83,6 +84,6 @@ def read_truth(path: Path) -> Trajectory:
 
 
 def _stamps_are_frame_numbers(listed: Path) -> bool:
-    with listed.open(encoding="utf-8", errors="replace") as lines:
-        first = next((line.split() for line in lines if line.strip() and not line.startswith("#")), [])
+    lines = read_head(listed, "list").splitlines()
+    first = next((line.split() for line in lines if line.strip() and not line.startswith("#")), [])
     return len(first) >= 4 and first[0].isdigit() and Path(first[1]).stem == first[0]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_text, shown
 
 T = TypeVar("T")
 
@@ -72,10 +73,7 @@ def _count(out: Timed[T], reason: str, count: int, message: str) -> None:
 
 def read_list(path: Path, fields: int) -> list[list[str]]:
     """Rows of a list file, comments and blank lines left out. Every row has at least `fields` fields."""
-    try:
-        text = path.read_text(encoding="utf-8-sig", errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    text = read_text(path, "list", LARGE, damaged=True)
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
         words = line.split("#", 1)[0].replace(",", " ").split()
@@ -83,7 +81,7 @@ def read_list(path: Path, fields: int) -> list[list[str]]:
             continue
         if len(words) < fields:
             raise InputError(
-                f"{path}:{number}: {len(words)} fields in {line.strip()[:60]!r}, expected {fields}"
+                f"{path}:{number}: {len(words)} fields in {shown(line.strip())}, expected {fields}"
             )
         rows.append(words)
     return rows
@@ -94,7 +92,7 @@ def stamp_of(word: str, path: Path) -> float:
     try:
         return float(word)
     except ValueError:
-        raise InputError(f"{path}: timestamp {word!r} is not a number") from None
+        raise InputError(f"{path}: timestamp {shown(word)} is not a number") from None
 
 
 def read_timed_files(path: Path) -> Timed[str]:

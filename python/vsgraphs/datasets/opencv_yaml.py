@@ -8,36 +8,39 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import YAML_LIMIT, YamlNode, parse_yaml, read_text
 
 _MATRIX = "tag:yaml.org,2002:opencv-matrix"
 
 
 def read_opencv_yaml(path: Path) -> dict[str, Any]:
     """The file's mapping; matrices as (rows, cols) float64 arrays. Raises InputError."""
-    import yaml
-
-    class Loader(yaml.SafeLoader):
-        """Knows OpenCV's matrices."""
-
-    def matrix(loader: Loader, node: yaml.MappingNode) -> Any:
-        values = loader.construct_mapping(node, deep=True)
-        data = np.array(values["data"], dtype=np.float64)
-        return data.reshape(int(values["rows"]), int(values["cols"]))
-
-    Loader.add_constructor(_MATRIX, matrix)
-    try:
-        text = path.read_text(encoding="utf-8-sig", errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    text = read_text(path, "file", YAML_LIMIT, expected="the YAML that OpenCV writes", damaged=True)
     if text.startswith("%YAML:"):
-        text = text.partition("\n")[2]
-    try:
-        values = yaml.load(text, Loader=Loader)  # noqa: S506  (a SafeLoader)
-    except (yaml.YAMLError, KeyError, TypeError, ValueError) as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f" near line {mark.line + 2}" if mark else ""
-        reason = getattr(error, "problem", None) or str(error).splitlines()[0]
-        raise InputError(f"{path}: not a YAML file of OpenCV{where} ({reason})") from None
-    if not isinstance(values, dict):
+        text = "\n" + text.partition("\n")[2]  # lines keep their numbers
+    node = parse_yaml(text, str(path), unique=False, tags=(_MATRIX,))
+    if node is None or not isinstance(node.value, dict):
         raise InputError(f"{path}: expected the YAML that OpenCV writes, with a name on each line")
-    return values
+    return {key: _value(value, path) for key, value in node.value.items()}
+
+
+def _value(node: YamlNode, path: Path) -> Any:
+    if node.tag == _MATRIX:
+        return _matrix(node, path)
+    if isinstance(node.value, dict):
+        return {key: _value(value, path) for key, value in node.value.items()}
+    if isinstance(node.value, list):
+        return [_value(value, path) for value in node.value]
+    return node.plain()
+
+
+def _matrix(node: YamlNode, path: Path) -> Any:
+    values = node.plain()
+    try:
+        data = np.array([float(number) for number in values["data"]])
+        rows, cols = int(values["rows"]), int(values["cols"])
+        return data.reshape(max(rows, 0), max(cols, 0))
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"{path}:{node.line}: not a matrix as OpenCV writes it: rows, cols and as many numbers as data"
+        ) from None

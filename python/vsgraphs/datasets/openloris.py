@@ -11,6 +11,7 @@ the robot's base_link, which `trans_matrix.yaml` moves to the colour camera here
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from vsgraphs.datasets.lists import read_timed_files
 from vsgraphs.datasets.opencv_yaml import read_opencv_yaml
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shortened, shown
 from vsgraphs.timestamps import pair_by_time, smallest_gap
 from vsgraphs.trajectory import Array, Trajectory, read_tum_trajectory
 
@@ -117,7 +119,9 @@ def base_from_camera(path: Path) -> Array:
     pose, frame, seen = np.eye(4), _CAMERA, set()
     while frame != _BODY:
         if frame not in parents or frame in seen:
-            raise InputError(f"{path}: no chain of frames from {_CAMERA} to {_BODY} (ends at {frame})")
+            raise InputError(
+                f"{path}: no chain of frames from {_CAMERA} to {_BODY} (ends at {shortened(frame)})"
+            )
         seen.add(frame)
         frame, parent_from_child = parents[frame]
         pose = parent_from_child @ pose
@@ -146,8 +150,8 @@ def _frames(folder: Path, size: tuple[int, int]) -> tuple[list[FrameRef], dict[s
 
 def _number(sensor: dict[str, Any], key: str, path: Path) -> float:
     value = sensor.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"{path}: {_CAMERA}: {key} is {value!r}, expected a number")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(f"{path}: {_CAMERA}: {key} is {shown(value)}, expected a number")
     return float(value)
 
 

@@ -10,7 +10,6 @@ number / 30) or, as in Redwood's object scans, `number-microseconds`.
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.numbered import numbered_images, pair_by_number
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_json, read_text, shortened
 from vsgraphs.timestamps import pair_by_time
 from vsgraphs.trajectory import Array, Trajectory, trajectory_from_matrices
 
@@ -31,6 +31,9 @@ FRAMES_PER_S = 30.0
 MAX_GAP_S = 0.02
 TRUTH = "trajectory.log"
 
+_AS_OPEN3D = (
+    'expected {"width", "height", "intrinsic_matrix": [9 numbers, column by column]} as Open3D writes it'
+)
 _COLOUR_FOLDERS = ("color", "image", "rgb")
 _CAMERA_FILES = ("camera_intrinsic.json", "intrinsic.json", "camera.json")
 _TIMED_NAME = re.compile(r"\d+-(\d+)\.(?:jpg|jpeg|png)$", re.IGNORECASE)
@@ -88,16 +91,14 @@ def read_truth(path: Path, stamps: list[float]) -> Trajectory:
 
 def read_camera(path: Path) -> Calibration:
     """Open3D's camera file. Raises InputError."""
+    values: Any = read_json(path, "camera file", cure=_AS_OPEN3D)
     try:
-        values: Any = json.loads(path.read_text(encoding="utf-8"))
         width, height = int(values["width"]), int(values["height"])
         matrix = np.array(values["intrinsic_matrix"], dtype=np.float64).ravel()
         scale = float(values.get("depth_scale", 1000.0))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise InputError(
-            f'{path}: expected {{"width", "height", "intrinsic_matrix": [9 numbers, column by column]}} '
-            f"as Open3D writes it ({type(error).__name__}: {error})"
-        ) from None
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        reason = f"{type(error).__name__}: {shortened(str(error))}"
+        raise InputError(f"{path}: {_AS_OPEN3D} ({reason})") from None
     if matrix.shape != (9,) or not np.isfinite(matrix).all():
         raise InputError(f"{path}: intrinsic_matrix has {matrix.size} numbers, expected 9 finite ones")
     if matrix[2] != 0 or matrix[5] != 0:
@@ -111,10 +112,7 @@ def read_camera(path: Path) -> Calibration:
 
 def _matrices(path: Path) -> Array:
     """(N, 4, 4), one for each block of a line of three numbers and four rows. Raises InputError."""
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    text = read_text(path, "trajectory", LARGE, damaged=True)
     lines = [(number, words) for number, line in enumerate(text.splitlines(), 1) if (words := line.split())]
     rows = []
     for place, (number, words) in enumerate(lines):

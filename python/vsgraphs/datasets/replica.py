@@ -7,7 +7,6 @@ timestamps: frame number / 30.
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from vsgraphs.datasets.calibration import Calibration, check_calibration
 from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_json, shortened
 from vsgraphs.trajectory import Trajectory, read_number_rows, trajectory_from_matrices
 
 NAME = "Replica"
@@ -63,12 +63,14 @@ def _published_camera(folder: Path) -> Calibration:
 
 
 def _read_cam_params(path: Path) -> Calibration:
+    document: Any = read_json(path, "camera file")
     try:
-        values: Any = json.loads(path.read_text(encoding="utf-8"))["camera"]
+        values = document["camera"]
         numbers = {key: float(values[key]) for key in ("w", "h", "fx", "fy", "cx", "cy", "scale")}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError) as error:
         raise InputError(
-            f'{path}: expected {{"camera": {{"w", "h", "fx", "fy", "cx", "cy", "scale"}}}} ({error})'
+            f'{path}: expected {{"camera": {{"w", "h", "fx", "fy", "cx", "cy", "scale"}}}} '
+            f"({shortened(str(error))})"
         ) from None
     camera = Calibration(
         int(numbers["w"]),

@@ -17,6 +17,7 @@ from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.cameras import CAMERAS, choose_camera
 from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_text
 from vsgraphs.trajectory import Trajectory, trajectory_from_matrices
 
 NAME = "7-Scenes"
@@ -72,8 +73,9 @@ def _read_poses(files: list[tuple[float, Path]], source: str) -> Trajectory:
     for stamp, path in files:
         if not path.is_file():
             continue
+        text = read_text(path, "pose", damaged=True)
         try:
-            numbers = [float(word) for word in path.read_text(encoding="utf-8", errors="replace").split()]
+            numbers = [float(word) for word in text.split()]
         except ValueError:
             raise InputError(f"{path}: not a 4x4 matrix of numbers") from None
         if len(numbers) != 16:

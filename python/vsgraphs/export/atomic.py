@@ -12,21 +12,26 @@ _unfinished: set[Path] = set()
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Writes beside `path` and renames; a symbolic link is followed. Raises InputError (no space, no
-    permission); an old file then stays.
+    """Writes beside `path` and renames; a symbolic link stays, the file it names is written.
+
+    Raises InputError: no space, no permission, a folder, a pipe or a device of that name. An old file then
+    stays.
     """
-    data = content.encode("utf-8") if isinstance(content, str) else content
-    real = Path(os.path.realpath(path))
-    if os.path.lexists(real) and not real.is_file():  # a device, a folder, links that lead in a circle
-        raise InputError(f"cannot write {path}: it is no ordinary file; give another name")
-    beside = real.with_name(f".{real.name}.{os.getpid()}.part")
+    data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
+    try:
+        target = _target(path)
+        beside = target.with_name(f".{target.name}.{os.getpid()}.part")
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:  # a name that is too long, or none
+        raise InputError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from None
     _unfinished.add(beside)
     try:
         with beside.open("wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        beside.replace(real)
+        beside.replace(target)
     except OSError as error:
         with contextlib.suppress(OSError):
             beside.unlink()
@@ -40,6 +45,15 @@ def remove_unfinished() -> None:
     for beside in list(_unfinished):
         with contextlib.suppress(OSError):
             beside.unlink()
+
+
+def _target(path: Path) -> Path:
+    """The file to replace. Raises InputError for what is no file: replaced, a device would be gone."""
+    target = path.resolve() if path.is_symlink() else path
+    if target.exists() and not target.is_file():
+        kind = "a folder" if target.is_dir() else "a pipe or a device, not a regular file"
+        raise InputError(f"cannot write {path}: it is {kind}; give the name of a file")
+    return target
 
 
 def prepare_directory(path: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_bytes
 
 _POINT = np.dtype([("position", "<f4", 3), ("colour", "u1", 3)])
 
@@ -22,13 +23,10 @@ def format_ply(positions: npt.NDArray[np.float64], colours: npt.NDArray[np.uint8
 
 def read_ply(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint8]]:
     """(M, 3) points in metres and (M, 3) colours of a file that `format_ply` made. Raises InputError."""
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read map {path}: {error.strerror or error}") from None
+    data = read_bytes(path, "map", LARGE)
     head, _, body = data.partition(b"end_header\n")
     counts = [line.split()[-1] for line in head.splitlines() if line.startswith(b"element vertex ")]
-    count = int(counts[0]) if counts and counts[0].isdigit() else 0
+    count = int(counts[0]) if counts and counts[0].isdigit() and len(counts[0]) < 13 else 0
     if head + b"end_header\n" != _header(count):
         raise InputError(f"{path}: not a point cloud as vsgraphs writes it (map.ply)")
     if len(body) != count * _POINT.itemsize:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_json, shortened, shown
 
 KINDS = ("room", "corridor", "door")
 # Name -> how many markers it holds.
@@ -52,26 +52,7 @@ class MarkerRegistry:
 
 def load_markers(path: Path) -> MarkerRegistry:
     """Reads a marker file (docs/markers.md). Raises InputError, which names the file and the key."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not text"
-        raise InputError(f"cannot read marker file {path}: {reason or error}") from None
-    try:
-        values = json.loads(text, object_pairs_hook=_unique)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not valid JSON: {error}") from None
-    return _Reader(str(path)).registry(values)
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """JSON keeps the last of two equal keys silently; a marker named twice must be told."""
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f'"{twice}" is there twice')
-    return found
+    return _Reader(str(path)).registry(read_json(path, "marker file", unique=True))
 
 
 class _Reader:
@@ -96,13 +77,13 @@ class _Reader:
         row = self._table(value, key, _MARKER_KEYS, ("name", "kind"))
         name = row["name"]
         if not isinstance(name, str) or not name.strip():
-            raise self._wrong(f"{key}.name", f"expected a name, not {_shown(name)}")
+            raise self._wrong(f"{key}.name", f"expected a name, not {shown(name)}")
         kind = self._one_of(row["kind"], f"{key}.kind", KINDS)
         return NamedMarker(name.strip(), kind, self._size(row.get("size_m", size_m), f"{key}.size_m"))
 
     def _number(self, key: str, dictionary: str) -> int:
         count = DICTIONARIES[dictionary]
-        if not (key.isascii() and key.isdecimal()) or int(key) >= count:
+        if not (key.isascii() and key.isdecimal()) or len(key) > 9 or int(key) >= count:
             raise self._wrong(f"markers.{key}", f"no marker of {dictionary}, whose ids are 0 to {count - 1}")
         return int(key)
 
@@ -110,7 +91,7 @@ class _Reader:
         self, value: object, key: str, known: tuple[str, ...], needed: tuple[str, ...]
     ) -> dict[str, Any]:
         if not isinstance(value, dict):
-            raise self._wrong(key, f"expected an object, not {_shown(value)}")
+            raise self._wrong(key, f"expected an object, not {shown(value)}")
         prefix = f"{key}." if key else ""
         for name in value:
             if name not in known:
@@ -128,19 +109,15 @@ class _Reader:
         near = get_close_matches(value.lower(), known, n=1, cutoff=0.5) if isinstance(value, str) else []
         hint = f"did you mean '{near[0]}'? " if near else ""
         raise self._wrong(
-            key, f"unknown {key.rpartition('.')[2]} {_shown(value)}; {hint}known: {', '.join(known)}"
+            key, f"unknown {key.rpartition('.')[2]} {shown(value)}; {hint}known: {', '.join(known)}"
         )
 
     def _size(self, value: object, key: str) -> float:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if not number or not math.isfinite(value) or not 0 < value <= _LARGEST_M:  # type: ignore[operator, arg-type]
-            raise self._wrong(key, f"expected the black square's side in metres, not {_shown(value)}")
+            raise self._wrong(key, f"expected the black square's side in metres, not {shown(value)}")
         return float(value)  # type: ignore[arg-type]
 
     def _wrong(self, key: str, message: str) -> InputError:
+        key = shortened(key, 120)
         return InputError(f"{self._source}: {key}: {message}" if key else f"{self._source}: {message}")
-
-
-def _shown(value: object) -> str:
-    text = json.dumps(value, default=str)
-    return text if len(text) <= 40 else text[:37] + "..."

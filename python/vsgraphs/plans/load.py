@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from vsgraphs.errors import InputError
 from vsgraphs.plans.reader import Reader
 from vsgraphs.plans.rotate import rotate
 from vsgraphs.plans.schema import EXTRA_KEYS, PLAN
+from vsgraphs.reading import read_json, shown
 
 _FOLDER = Path(__file__).parent
 
@@ -41,32 +41,21 @@ def load_plan(source: str | Path | Mapping[str, Any]) -> LoadedPlan:
     if isinstance(source, Mapping):
         return _convert(dict(source), "plan", None)
     path = plan_path(source)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"cannot read plan {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"plan {path} is not text; expected JSON") from None
-    try:
-        values = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise InputError(f"{path}:{error.lineno}: not valid JSON: {error.msg}") from None
-    except RecursionError:
-        raise InputError(f"{path}: nested too deeply for a plan") from None
+    values = read_json(path, "plan", unique=True)
     return _convert(values, str(path), path.stem)
 
 
 def plan_path(source: str | Path) -> Path:
     """The file of an included plan, by name, or of any other. Raises InputError for a name unknown."""
     path = Path(source)
-    if path.suffix or path.is_file():
+    if path.suffix or path.is_file() or (path.exists() and not path.is_dir()):  # a pipe: reading says so
         return path
     included = _FOLDER / f"{source}.json"  # a folder of that name beside us does not hide the included plan
     if path.name == str(source) and included.is_file():
         return included
     near = get_close_matches(str(source), plan_names(), n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"included plans: {', '.join(plan_names())}"
-    raise InputError(f"there is no plan '{source}'; {hint}")
+    raise InputError(f"there is no plan {shown(str(source))}; {hint}")
 
 
 def _convert(values: object, source: str, name: str | None) -> LoadedPlan:

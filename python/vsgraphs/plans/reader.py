@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from difflib import get_close_matches
 from typing import Any
@@ -10,7 +9,9 @@ from typing import Any
 from vsgraphs.compiled import core
 from vsgraphs.errors import InputError
 from vsgraphs.plans.schema import CAMERA_KEYS, COMMENT, Table
+from vsgraphs.reading import shortened, shown
 
+_LONGEST_NAME = 100
 _MAX_SEED = 2**63 - 1
 
 
@@ -21,12 +22,13 @@ class Reader:
         self._source = source
 
     def _fail(self, key: str, message: str) -> InputError:
+        key = shortened(key, 120)
         return InputError(f"{self._source}: {key}: {message}" if key else f"{self._source}: {message}")
 
     def table(self, table: Table, value: object, key: str, also: tuple[str, ...] = ()) -> Any:
         """An object of the plan; `also` lists keys somebody else reads, for suggestions."""
         if not isinstance(value, dict):
-            raise self._fail(key, f"expected an object {{...}}, not {_shown(value)}")
+            raise self._fail(key, f"expected an object {{...}}, not {shown(value)}")
         made = getattr(core(), table.cls)()
         prefix = f"{key}." if key else ""
         for name, item in value.items():
@@ -56,30 +58,34 @@ class Reader:
 
     def _list(self, value: object, key: str, expected: str) -> list[object]:
         if not isinstance(value, list | tuple):
-            raise self._fail(key, f"expected {expected}, not {_shown(value)}")
+            raise self._fail(key, f"expected {expected}, not {shown(value)}")
         return list(value)
 
     def number(self, value: object, key: str) -> float:
         """A finite number."""
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise self._fail(key, f"expected a finite number, not {_shown(value)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not _fits(value):
+            raise self._fail(key, f"expected a finite number, not {shown(value)}")
         return float(value)
 
     def _whole(self, value: object, key: str) -> int:
         number = self.number(value, key)
         limit = _MAX_SEED if key.endswith("seed") else 10**6
         if number != int(number) or abs(number) > limit or (key.endswith("seed") and number < 0):
-            raise self._fail(key, f"expected a whole number, not {_shown(value)}")
+            raise self._fail(key, f"expected a whole number, not {shown(value)}")
         return int(number)
 
     def _text(self, value: object, key: str) -> str:
         if not isinstance(value, str):
-            raise self._fail(key, f"expected text, not {_shown(value)}")
+            raise self._fail(key, f"expected text, not {shown(value)}")
+        if key != "description" and (len(value) > _LONGEST_NAME or not value.isprintable()):
+            raise self._fail(
+                key, f"expected one line of at most {_LONGEST_NAME} characters, not {shown(value)}"
+            )
         return value
 
     def _flag(self, value: object, key: str) -> bool:
         if not isinstance(value, bool):
-            raise self._fail(key, f"expected true or false, not {_shown(value)}")
+            raise self._fail(key, f"expected true or false, not {shown(value)}")
         return value
 
     def _numbers(self, value: object, key: str, count: int) -> list[float]:
@@ -107,7 +113,7 @@ class Reader:
         ]
 
     def _colour(self, value: object, key: str) -> list[int]:
-        expected = f'expected "#rrggbb", not {_shown(value)}'
+        expected = f'expected "#rrggbb", not {shown(value)}'
         if not isinstance(value, str) or len(value) != 7 or value[0] != "#":
             raise self._fail(key, expected)
         try:
@@ -118,7 +124,7 @@ class Reader:
     def camera(self, value: object) -> dict[str, float]:
         """The camera's size and focal lengths; empty if the plan leaves them to us."""
         if not isinstance(value, dict):
-            raise self._fail("camera", f"expected an object {{...}}, not {_shown(value)}")
+            raise self._fail("camera", f"expected an object {{...}}, not {shown(value)}")
         for name in value:
             if name not in CAMERA_KEYS and name != COMMENT:
                 self._unknown(f"camera.{name}", name, CAMERA_KEYS)
@@ -133,6 +139,8 @@ class Reader:
         return read
 
 
-def _shown(value: object) -> str:
-    text = json.dumps(value, default=str)
-    return text if len(text) <= 40 else text[:37] + "..."
+def _fits(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        return False

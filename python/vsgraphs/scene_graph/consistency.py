@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shown
 
 if TYPE_CHECKING:
     from vsgraphs.scene_graph.graph import SceneGraph
@@ -28,8 +29,10 @@ def check_edges(graph: SceneGraph, source: str) -> None:
                 continue
             kind, _, number = end.partition(":")
             nodes = getattr(graph, f"{kind}s", {})
-            if not number.isdecimal() or int(number) not in nodes:
-                raise InputError(f"{source}: an edge {edge.kind!r} names {end!r}, which is not there")
+            if not number.isdecimal() or len(number) > 20 or int(number) not in nodes:
+                raise InputError(
+                    f"{source}: an edge {shown(edge.kind)} names {shown(end)}, which is not there"
+                )
 
 
 def _references(graph: SceneGraph) -> Iterator[_Reference]:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_json, shown
 from vsgraphs.scene_graph.consistency import check_edges, check_references
 from vsgraphs.scene_graph.edges import Edge, ordered
 from vsgraphs.scene_graph.extent import PlaneExtent
@@ -55,15 +56,7 @@ def format_scene_graph(graph: SceneGraph) -> str:
 
 def load_scene_graph(path: Path) -> SceneGraph:
     """Reads scene_graph.json. Raises InputError: missing, cut off, another format, newer, inconsistent."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not text"
-        raise InputError(f"cannot read scene graph {path}: {reason or error}") from None
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a whole JSON file ({error}); was it copied completely?") from None
+    document = read_json(path, "scene graph", LARGE, cure="was it copied completely?")
     return parse_scene_graph(document, str(path))
 
 
@@ -73,7 +66,7 @@ def parse_scene_graph(document: Any, source: str) -> SceneGraph:
         raise InputError(f'{source}: not a scene graph of vsgraphs ("format" is not "{FORMAT}")')
     version = document.get("version")
     if not isinstance(version, int) or isinstance(version, bool) or version < 1:
-        raise InputError(f'{source}: "version" is {version!r}, expected a positive integer')
+        raise InputError(f'{source}: "version" is {shown(version)}, expected a positive integer')
     if version > VERSION:
         raise InputError(
             f"{source}: written by a newer vsgraphs (format version {version}, this one reads up to "

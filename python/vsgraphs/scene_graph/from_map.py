@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shown
 from vsgraphs.scene_graph import levelling
 from vsgraphs.scene_graph.consistency import check_edges, check_references
 from vsgraphs.scene_graph.edges import edges_of
@@ -86,7 +87,7 @@ def _rows(raw: Row, name: str) -> list[dict[str, Any]]:
 def _plane(row: Row, mover: _Mover, keyframes: set[int]) -> PlaneNode:
     what = f"plane {row['id']}"
     if row["role"] not in ROLES:
-        raise InputError(f"{what}: unknown role {row['role']!r}; known: {', '.join(ROLES)}")
+        raise InputError(f"{what}: unknown role {shown(row['role'])}; known: {', '.join(ROLES)}")
     normal = _vector(row["normal"], f"{what}: normal")
     if abs(np.linalg.norm(normal) - 1) > 1e-3:
         raise InputError(f"{what}: its normal has length {np.linalg.norm(normal):g}, expected 1")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shown
 from vsgraphs.scene_graph import levelling, queries
 from vsgraphs.scene_graph.edges import Edge
 from vsgraphs.scene_graph.nodes import (
@@ -76,7 +77,7 @@ class SceneGraph:
         found = next((room for room in self.rooms.values() if which in (room.id, room.name)), None)
         if found is None:
             known = ", ".join(room.name or str(room.id) for room in self.rooms.values()) or "none"
-            raise InputError(f"no room {which!r} in the scene graph; its rooms: {known}")
+            raise InputError(f"no room {shown(which)} in the scene graph; its rooms: {known}")
         return found
 
     def room_at(self, point: Array) -> RoomNode | None:

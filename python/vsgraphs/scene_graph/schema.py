@@ -14,6 +14,8 @@ import re
 from importlib import resources
 from typing import Any
 
+from vsgraphs.reading import shown
+
 _TYPES: dict[str, type | tuple[type, ...]] = {
     "object": dict,
     "array": list,
@@ -55,7 +57,7 @@ def _check(value: Any, rule: dict[str, Any], where: str) -> str | None:
 def _check_object(value: dict[str, Any], rule: dict[str, Any], where: str) -> str | None:
     for name in rule.get("required", ()):
         if name not in value:
-            return f"{where or 'the file'} has no {name!r}"
+            return f"{where or 'the file'} has no '{name}'"
     for name, item in value.items():
         below = rule.get("properties", {}).get(name, rule.get("additionalProperties"))
         problem = _check(item, below, f"{where}.{name}" if where else name) if below else None
@@ -68,19 +70,19 @@ def _check_value(value: Any, rule: dict[str, Any]) -> str | None:  # noqa: PLR09
     if "type" in rule:
         wanted = [rule["type"]] if isinstance(rule["type"], str) else rule["type"]
         if not any(_is(value, name) for name in wanted):
-            return f"must be {' or '.join(wanted)}, not {json.dumps(value)[:40]}"
+            return f"must be {' or '.join(wanted)}, not {shown(value)}"
     if "const" in rule and (value != rule["const"] or isinstance(value, bool)):  # only Python has True == 1
-        return f"must be {rule['const']!r}"
+        return f"must be {shown(rule['const'])}"
     if "enum" in rule and value not in rule["enum"]:
-        return f"must be one of {', '.join(map(str, rule['enum']))}, not {json.dumps(value)[:40]}"
+        return f"must be one of {', '.join(map(str, rule['enum']))}, not {shown(value)}"
     if isinstance(value, list):
         least, most = rule.get("minItems", 0), rule.get("maxItems", math.inf)
         if not least <= len(value) <= most:
             return f"has {len(value)} items, expected {least if least == most else f'at least {least}'}"
     if "minimum" in rule and isinstance(value, int | float) and value < rule["minimum"]:
-        return f"is {value}, at least {rule['minimum']} expected"
+        return f"is {shown(value)}, at least {rule['minimum']} expected"
     if "pattern" in rule and isinstance(value, str) and not re.search(rule["pattern"], value):
-        return f"is {value!r}, expected the pattern {rule['pattern']}"
+        return f"is {shown(value)}, expected the pattern {rule['pattern']}"
     return None
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_json, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,16 +15,7 @@ if TYPE_CHECKING:
 
 def read_object(path: Path, what: str) -> dict[str, Any]:
     """The object in a JSON file. Raises InputError: missing, not JSON, not an object."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"{what} {path} is missing") from None
-    except OSError as error:
-        raise InputError(f"cannot read {what} {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{what} {path} is not text; expected JSON") from None
-    except json.JSONDecodeError as error:
-        raise InputError(f"{path}:{error.lineno}: not valid JSON ({error.msg})") from None
+    found = read_json(path, what, unique=True)
     if not isinstance(found, dict):
         raise InputError(f"{what} {path}: expected a JSON object, {{...}}")
     return found
@@ -40,7 +31,7 @@ class Fields:
             if key not in known and key != "comment":
                 near = get_close_matches(key, known, n=1, cutoff=0.5)
                 hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
-                raise InputError(f"{where}: unknown key '{key}'; {hint}")
+                raise InputError(f"{where}: unknown key {shown(key)}; {hint}")
         self._data = data
         self.where = where
 
@@ -67,9 +58,9 @@ class Fields:
             return default
         value = self.required(key)
         if value not in choices:
-            near = get_close_matches(str(value), choices, n=1, cutoff=0.5)
+            near = get_close_matches(value if isinstance(value, str) else "", choices, n=1, cutoff=0.5)
             hint = f"did you mean '{near[0]}'?" if near else f"choose from {', '.join(choices)}"
-            raise InputError(f"{self.where}: '{key}' cannot be '{value}'; {hint}")
+            raise InputError(f"{self.where}: '{key}' cannot be {shown(value)}; {hint}")
         return str(value)
 
     def number(self, key: str, default: float) -> float:
@@ -86,11 +77,11 @@ class Fields:
             raise self.wrong(key, "from 0 to 1")
         return value
 
-    def integer(self, key: str, default: int) -> int:
-        """An integer, not negative."""
+    def integer(self, key: str, default: int, most: int = 2**31) -> int:
+        """An integer from 0 to `most`."""
         value = self._data.get(key, default)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            raise self.wrong(key, "an integer, not negative")
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= most:
+            raise self.wrong(key, f"an integer from 0 to {most}")
         return value
 
     def numbers(self, key: str, count: int, default: Sequence[float]) -> tuple[float, ...]:
@@ -102,7 +93,7 @@ class Fields:
 
     def wrong(self, key: str, expected: str) -> InputError:
         """The error for a value that is not what it should be."""
-        return InputError(f"{self.where}: '{key}' must be {expected}, not {json.dumps(self._data.get(key))}")
+        return InputError(f"{self.where}: '{key}' must be {expected}, not {shown(self._data.get(key))}")
 
 
 def _is_number(value: Any) -> bool:

@@ -21,7 +21,7 @@ from PIL import Image
 
 from vsgraphs.datasets.lists import read_list, stamp_of
 from vsgraphs.errors import FrameError, InputError
-from vsgraphs.regular_file import IrregularFileError, open_regular
+from vsgraphs.reading import open_regular, shown
 from vsgraphs.segment.fields import Fields, read_object
 from vsgraphs.segment.roles import RoleTable, SurfaceRole, role_named, role_of_class
 from vsgraphs.segment.segmentation import Segmentation
@@ -83,7 +83,7 @@ def _role_table(folder: Path) -> RoleTable:
         raise InputError(f'{path}: expected "classes": {{"wall": 1, ...}}')
     for key, value in classes.items():
         if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= 65535:
-            raise InputError(f"{path}: class '{key}' must have a value from 0 to 65535")
+            raise InputError(f"{path}: class {shown(key)} must have a value from 0 to 65535")
     roles = {value: role_of_class(key) for key, value in classes.items()}
     given = data.get("roles", {})
     Fields(given, f"{path}: roles", tuple(classes))
@@ -94,14 +94,14 @@ def _role_table(folder: Path) -> RoleTable:
 
 
 def _load(path: Path) -> npt.NDArray[np.uint16]:
+    if not path.exists():
+        raise FrameError(f"{path} is missing")
     try:
-        with open_regular(path) as file, Image.open(file, formats=("PNG",)) as image:
+        with open_regular(path, "class image") as file, Image.open(file, formats=("PNG",)) as image:
             image.load()
             mode, values = image.mode, np.asarray(image)
-    except FileNotFoundError:
-        raise FrameError(f"{path} is missing") from None
-    except IrregularFileError as error:
-        raise FrameError(f"{path}: {error.strerror}") from None
+    except InputError as error:
+        raise FrameError(str(error)) from None
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise FrameError(f"{path} is damaged: {reason}") from None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,9 +13,10 @@ import numpy.typing as npt
 from PIL import Image
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import open_regular, shortened, shown
 from vsgraphs.segment.onnx_outputs import interpret
 from vsgraphs.segment.segmentation import Rgb, Segmentation, checked
-from vsgraphs.segment.sidecar import Sidecar, read_sidecar
+from vsgraphs.segment.sidecar import LARGEST_SIDE, Sidecar, read_sidecar
 
 _DTYPES = {"tensor(float)": np.float32, "tensor(float16)": np.float16, "tensor(uint8)": np.uint8}
 
@@ -24,6 +27,7 @@ class Runtime:
 
     threads: int = 1  # the tracker and the mapper want the other cores
     provider: str = "CPUExecutionProvider"
+    limit_s: float = 10.0  # of one image: a network may hold a loop without an end
 
 
 class OnnxSegmenter:
@@ -36,10 +40,12 @@ class OnnxSegmenter:
 
     def __init__(self, model: Path, sidecar: Path, runtime: Runtime | None = None) -> None:
         self.name = model.name
-        if not model.is_file():
-            raise InputError(f"model {model} is missing or not a file")
+        if not model.exists():
+            raise InputError(f"model {model} is missing")
+        open_regular(model, "model").close()
+        self._runtime = runtime or Runtime()
         self._sidecar = read_sidecar(sidecar)
-        self._session = _open(model, runtime or Runtime())
+        self._session = _open(model, self._runtime)
         self._input, self._dtype, self._size = _input_of(self._session, self._sidecar, model)
         self._outputs = _outputs_of(self._session, self._sidecar)
         width, height = self._size or (64, 64)
@@ -47,11 +53,34 @@ class OnnxSegmenter:
 
     def __call__(self, rgb: Rgb, /) -> Segmentation:
         """Segments (H, W, 3) uint8; the result has the size of the network's output."""
+        found = dict(zip(self._outputs, self._run(self._blob(rgb)), strict=True))
+        for part, tensor in found.items():
+            if not isinstance(tensor, np.ndarray) or tensor.dtype.kind not in "fiub":
+                kind = tensor.dtype if isinstance(tensor, np.ndarray) else type(tensor).__name__
+                raise InputError(f"{self._sidecar.path}: output '{part}' is {kind}, expected numbers")
+        with np.errstate(all="ignore"):  # what is no number is found by `checked`
+            return interpret(found, self._sidecar)
+
+    def _run(self, blob: npt.NDArray[Any]) -> list[Any]:
+        from onnxruntime import RunOptions
+
+        options = RunOptions()
+        options.log_severity_level = 4
+        over = threading.Timer(self._runtime.limit_s, setattr, (options, "terminate", True))
+        over.daemon = True
+        over.start()
         try:
-            found = self._session.run(list(self._outputs.values()), {self._input: self._blob(rgb)})
+            found: list[Any] = self._session.run(list(self._outputs.values()), {self._input: blob}, options)
         except Exception as error:  # ONNX Runtime's errors have no common class of their own
+            if options.terminate:
+                raise InputError(
+                    f"model {self.name} takes more than {self._runtime.limit_s:g} s for an image, stopped; "
+                    "it may loop for ever, else give it time: onnx:FILE,limit=SECONDS"
+                ) from None
             raise InputError(f"model {self.name} cannot be run: {_first_line(error)}") from None
-        return interpret(dict(zip(self._outputs, found, strict=True)), self._sidecar)
+        finally:
+            over.cancel()
+        return found
 
     def _blob(self, rgb: Rgb) -> npt.NDArray[Any]:
         given = self._sidecar.input
@@ -98,26 +127,35 @@ def _open(model: Path, runtime: Runtime) -> Any:
 def _input_of(session: Any, sidecar: Sidecar, model: Path) -> tuple[str, Any, tuple[int, int] | None]:
     """(name, dtype, size) of the input; size (width, height) None where neither file fixes it."""
     inputs = {value.name: value for value in session.get_inputs()}
+    if not inputs:
+        raise InputError(f"model {model}: takes no input; a segmenter takes one, the image")
     name = sidecar.input.name or next(iter(inputs))
     if name not in inputs:
         raise InputError(
-            f"{sidecar.path}: input '{name}' is not of {model.name}, which has {', '.join(inputs)}"
+            f"{sidecar.path}: input {shown(name)} is not of {model.name}, which has {_listed(inputs)}"
         )
     if len(inputs) > 1:
-        raise InputError(
-            f"model {model}: has the inputs {', '.join(inputs)}; only one, the image, can be fed"
-        )
+        raise InputError(f"model {model}: has the inputs {_listed(inputs)}; only one, the image, can be fed")
     value = inputs[name]
     if value.type not in _DTYPES:
-        raise InputError(f"model {model}: input '{name}' is {value.type}, expected float, float16 or uint8")
+        raise InputError(
+            f"model {model}: input {shown(name)} is {value.type}, expected float, float16 or uint8"
+        )
     shape = list(value.shape)
     channels, rows, columns = (1, 2, 3) if sidecar.input.layout == "NCHW" else (3, 1, 2)
     if len(shape) != 4 or (isinstance(shape[channels], int) and shape[channels] != 3):
         raise InputError(
-            f"{sidecar.path}: input '{name}' has shape {tuple(shape)}, "
+            f"{sidecar.path}: input {shown(name)} has shape {shown(shape)}, "
             f"that is not {sidecar.input.layout} with 3 colours"
         )
+    if isinstance(shape[0], int) and shape[0] != 1:
+        raise InputError(f"model {model}: takes {shape[0]} images at once; export it for 1")
     fixed = (shape[columns], shape[rows])
+    for side in fixed:
+        if isinstance(side, int) and not 1 <= side <= LARGEST_SIDE:
+            raise InputError(
+                f"model {model}: takes images of {fixed[0]}x{fixed[1]} pixels; sides are 1 to {LARGEST_SIDE}"
+            )
     wanted = sidecar.input.size
     if wanted is None:
         whole = isinstance(fixed[0], int) and isinstance(fixed[1], int)
@@ -134,13 +172,19 @@ def _input_of(session: Any, sidecar: Sidecar, model: Path) -> tuple[str, Any, tu
 def _outputs_of(session: Any, sidecar: Sidecar) -> dict[str, str]:
     """Output names by part, all of which the model has."""
     names = [value.name for value in session.get_outputs()]
+    if not names:
+        raise InputError(f"{sidecar.path}: the model gives no output")
     for part, name in sidecar.output.tensors.items():
         if name not in names:
             raise InputError(
-                f"{sidecar.path}: output '{name}' ({part}) is not of the model, which has {', '.join(names)}"
+                f"{sidecar.path}: output {shown(name)} ({part}) is not of the model; it has {_listed(names)}"
             )
     return dict(sidecar.output.tensors)
 
 
+def _listed(names: Iterable[str]) -> str:
+    return shortened(", ".join(names), 200)
+
+
 def _first_line(error: Exception) -> str:
-    return (str(error).strip().splitlines() or [type(error).__name__])[0][:300]
+    return shortened((str(error).strip().splitlines() or [type(error).__name__])[0], 300)

@@ -110,6 +110,8 @@ def _panoptic_segments(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segm
         )
     if numbers.size and not (numbers.min() >= 0 and numbers.max() < _NO_SEGMENT):
         raise InputError(f"{sidecar.path}: segment ids must be 0 to {_NO_SEGMENT - 1}")
+    if segments.max() > _NO_SEGMENT:
+        raise InputError(f"{sidecar.path}: segment {segments.max()} in the image has no class")
     row = np.full(int(max(segments.max(), numbers.max(initial=0), sidecar.output.void_segment)) + 1, -1)
     row[numbers] = np.arange(len(numbers))
     row[sidecar.output.void_segment] = len(numbers)

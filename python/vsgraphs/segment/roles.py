@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shown
 
 
 class SurfaceRole(IntEnum):
@@ -46,9 +47,9 @@ def role_named(name: Any, where: str) -> SurfaceRole:
     names = [role.name for role in SurfaceRole]
     if isinstance(name, str) and name in names:
         return SurfaceRole[name]
-    near = get_close_matches(str(name), names, n=1, cutoff=0.5)
+    near = get_close_matches(name, names, n=1, cutoff=0.5) if isinstance(name, str) else []
     hint = f"did you mean '{near[0]}'?" if near else f"roles are {', '.join(names)}"
-    raise InputError(f"{where}: there is no role '{name}'; {hint}")
+    raise InputError(f"{where}: there is no role {shown(name)}; {hint}")
 
 
 def role_of_class(name: str) -> SurfaceRole:

@@ -7,9 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shortened, shown
 from vsgraphs.segment.fields import Fields, read_object
 from vsgraphs.segment.roles import RoleTable, SurfaceRole, role_named
 
+# Of a network's image, pixels.
+LARGEST_SIDE = 8192
+_SMALLEST = 1e-6  # what an image is divided by
 # The tensors each kind of output consists of: those it must have, those it may have.
 KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "semantic": (("scores",), ()),
@@ -80,19 +84,23 @@ def _input(data: Any, where: str) -> InputFormat:
     size = None
     if fields.has("size"):
         width, height = fields.numbers("size", 2, ())
-        if min(width, height) < 1 or width % 1 or height % 1:
-            raise fields.wrong("size", "[width, height] in whole pixels")
+        if not 1 <= min(width, height) <= max(width, height) <= LARGEST_SIDE or width % 1 or height % 1:
+            raise fields.wrong("size", f"[width, height] in whole pixels, 1 to {LARGEST_SIDE}")
         size = (int(width), int(height))
-    std = fields.numbers("std", 3, (1, 1, 1))
-    if 0 in std:
-        raise fields.wrong("std", "different from 0")
+    scale = fields.number("scale", 1.0)
+    mean, std = fields.numbers("mean", 3, (0, 0, 0)), fields.numbers("std", 3, (1, 1, 1))
+    if min(map(abs, std)) < _SMALLEST:
+        raise fields.wrong("std", f"different from 0, at least {_SMALLEST:g}")
+    for key, values in (("scale", (scale,)), ("mean", mean), ("std", std)):
+        if max(map(abs, values)) > 1 / _SMALLEST:
+            raise fields.wrong(key, f"at most {1 / _SMALLEST:g}")
     return InputFormat(
         name=fields.text("name") if fields.has("name") else None,
         size=size,
         layout=fields.choice("layout", ("NCHW", "NHWC")),
         colour=fields.choice("colour", ("rgb", "bgr"), "rgb"),
-        scale=fields.number("scale", 1.0),
-        mean=fields.numbers("mean", 3, (0, 0, 0)),
+        scale=scale,
+        mean=mean,
         std=std,
     )
 
@@ -112,7 +120,7 @@ def _output(data: Any, where: str) -> OutputFormat:
         score_threshold=fields.share("score_threshold", 0.8),
         overlap_threshold=fields.share("overlap_threshold", 0.8),
         void_class=fields.integer("void_class", 0) if fields.has("void_class") else None,
-        void_segment=fields.integer("void_segment", 0),
+        void_segment=fields.integer("void_segment", 0, 65535),
     )
 
 
@@ -125,7 +133,7 @@ def _roles(root: Fields) -> RoleTable:
             raise InputError(f"{root.where}: 'classes' must be a list of names, class 0 first")
         if len(set(classes)) < len(classes):
             twice = next(name for name in classes if classes.count(name) > 1)
-            raise InputError(f"{root.where}: 'classes' lists '{twice}' twice")
+            raise InputError(f"{root.where}: 'classes' lists {shown(twice)} twice")
     where = f"{root.where}: roles"
     names = classes or []
     given = root.required("roles")
@@ -142,7 +150,6 @@ def _roles(root: Fields) -> RoleTable:
 
 
 def _class_number(key: str, where: str) -> int:
-    number = int(key)
-    if number > 65535:
-        raise InputError(f"{where}: class {key} is beyond 65535")
-    return number
+    if len(key) > 5 or int(key) > 65535:
+        raise InputError(f"{where}: class {shortened(key)} is beyond 65535")
+    return int(key)

@@ -9,8 +9,11 @@ from typing import Any
 from vsgraphs.compiled import core
 from vsgraphs.errors import InputError
 from vsgraphs.plans import LoadedPlan
+from vsgraphs.reading import shown
 
 NOISE = ("sensor", "clean")
+_MOST = 1_000_000
+_MOST_WORKERS = 256
 _NOT_OPTIONS = ("none", "validate", "seed")
 
 
@@ -30,14 +33,16 @@ class Output:
         """Raises InputError naming the first option out of range."""
         for key in ("every", "labels_every"):
             value, least = getattr(self, key), 0 if key == "labels_every" else 1
-            if value < least:
-                raise InputError(f"{key} must be at least {least}, not {value}")
+            if not least <= value <= _MOST:
+                raise InputError(f"{key} must be at least {least} and at most {_MOST}, not {shown(value)}")
         if self.image_format not in ("jpg", "png"):
-            raise InputError(f"image_format must be jpg or png, not {self.image_format!r}")
+            raise InputError(f"image_format must be jpg or png, not {shown(self.image_format)}")
         if not 1 <= self.jpeg_quality <= 100:
             raise InputError(f"jpeg_quality must lie in 1..100, not {self.jpeg_quality}")
-        if self.workers is not None and self.workers < 1:
-            raise InputError(f"workers must be at least 1, not {self.workers}")
+        if self.workers is not None and not 1 <= self.workers <= _MOST_WORKERS:
+            raise InputError(
+                f"workers must be at least 1 and at most {_MOST_WORKERS}, not {shown(self.workers)}"
+            )
 
 
 def noise_options(noise: str | Mapping[str, float | bool], seed: int) -> Any:
@@ -45,7 +50,7 @@ def noise_options(noise: str | Mapping[str, float | bool], seed: int) -> Any:
     kinds = core().NoiseOptions
     if isinstance(noise, str):
         if noise not in NOISE:
-            raise InputError(f"noise must be one of {', '.join(NOISE)}, not {noise!r}")
+            raise InputError(f"noise must be one of {', '.join(NOISE)}, not {shown(noise)}")
         options = kinds() if noise == "sensor" else kinds.none()
     else:
         options = kinds()
@@ -60,7 +65,7 @@ def noise_options(noise: str | Mapping[str, float | bool], seed: int) -> Any:
             try:
                 setattr(options, key, value)
             except TypeError:
-                raise InputError(f"noise.{key} cannot be {value!r}") from None
+                raise InputError(f"noise.{key} cannot be {shown(value)}") from None
     if not 0 <= seed < 2**63:
         raise InputError(f"seed must lie in 0..2^63-1, not {seed}")
     options.seed = seed

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import shortened, shown
 
 
 @dataclass(frozen=True)
@@ -47,11 +48,11 @@ def options_from(assignments: Iterable[str]) -> SceneOptions:
     for text in assignments:
         key, _, value = text.partition("=")
         if key not in known:
-            raise InputError(f"unknown tolerance {key!r}; known: {', '.join(known)}")
+            raise InputError(f"unknown tolerance {shown(key)}; known: {', '.join(known)}")
         try:
             values[key] = float(value)
         except ValueError:
-            raise InputError(f"tolerance {key}: {value!r} is not a number") from None
+            raise InputError(f"tolerance {key}: {shown(value)} is not a number") from None
         if not math.isfinite(values[key]) or values[key] < 0:
-            raise InputError(f"tolerance {key}: {value} must not be negative")
+            raise InputError(f"tolerance {key}: {shortened(value)} must be finite and not negative")
     return SceneOptions(**values)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_json, shortened
 from vsgraphs.trajectory import Array
 
 _COPLANAR_M = 0.05
@@ -101,13 +101,7 @@ class SceneTruth:
 
 def load_scene_truth(path: Path) -> SceneTruth:
     """Reads scene_gt.json. Raises InputError."""
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read scene truth {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a JSON file ({error})") from None
-    return parse_scene_truth(document, str(path))
+    return parse_scene_truth(read_json(path, "scene truth", LARGE), str(path))
 
 
 def parse_scene_truth(document: Any, source: str) -> SceneTruth:
@@ -119,8 +113,8 @@ def parse_scene_truth(document: Any, source: str) -> SceneTruth:
         required = {room.id: room.required for room in rooms}
         walls = [_wall(row) for row in document["walls"]]
         doors = [_door(row, required) for row in document.get("doors", ())]
-    except (KeyError, TypeError, ValueError) as error:
-        what = f"no {error}" if isinstance(error, KeyError) else str(error)
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        what = shortened(f"no {error}" if isinstance(error, KeyError) else str(error))
         raise InputError(f"{source}: broken scene truth: {what}") from None
     return SceneTruth(rooms, walls, _grounds(rooms), doors)
 
