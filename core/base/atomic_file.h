@@ -35,6 +35,7 @@ struct FileContent {
 
 // All of a regular file of at most `limit` bytes, or the first `most` of it; anything else is refused without waiting for it.
 // Throws InputError naming it and what is wrong.
-FileContent read_file(const std::filesystem::path& path, std::size_t limit = SIZE_MAX, std::size_t most = SIZE_MAX);
+FileContent read_file(const std::filesystem::path& path, std::size_t limit = SIZE_MAX,
+                      std::size_t most = SIZE_MAX);
 
 }  // namespace vsgraphs

@@ -9,6 +9,7 @@ import typer
 
 from vsgraphs.cli import completion, examples
 from vsgraphs.cli.failures import set_debug, told
+from vsgraphs.cli.run_options import VIEW_ADDRESS, VIEW_PORT, run
 
 app = typer.Typer(
     name="vsgraphs",
@@ -18,10 +19,6 @@ app = typer.Typer(
     epilog=examples.PROGRAM,
     pretty_exceptions_enable=False,
 )
-
-
-_VIEW_PORT = "The viewer's port (9876 unless given); a page for browsers is one above."
-_VIEW_ADDRESS = "Listen at this IP address (127.0.0.1 unless given: only this machine can look); no password."
 
 
 def _print_version(wanted: bool) -> None:
@@ -42,160 +39,7 @@ def _options(
     set_debug(on=debug)
 
 
-@app.command(epilog=examples.RUN)
-def run(
-    source: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FOLDER",
-            help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D.",
-        ),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            "-o",
-            help="Directory for the results; those of an earlier run in it are replaced.",
-            show_default="a new ./NAME_vsgraphs, numbered",
-        ),
-    ] = None,
-    camera: Annotated[
-        str | None,
-        typer.Option(
-            help="camera.yaml or a known camera's name, if the folder has none.",
-            autocompletion=completion.cameras,
-        ),
-    ] = None,
-    mode: Annotated[
-        str | None,
-        typer.Option(
-            help="full (default): rooms and all else; bc: walls, ground, landmarks; slam: landmarks.",
-            autocompletion=completion.chosen_from("slam", "bc", "full"),
-        ),
-    ] = None,
-    execution: Annotated[
-        str | None,
-        typer.Option(
-            help="threaded (default), or serial: the same bytes on every run.",
-            autocompletion=completion.chosen_from("threaded", "serial"),
-        ),
-    ] = None,
-    realtime: Annotated[
-        bool,
-        typer.Option("--realtime", help="Pace frames by their timestamps; drop late ones like a camera."),
-    ] = False,
-    max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")] = None,
-    config: Annotated[Path | None, typer.Option(help="YAML file of options (see `vsgraphs config`).")] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set one option (see `vsgraphs config`); repeatable.",
-            autocompletion=completion.assignments,
-        ),
-    ] = None,
-    seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
-    segmenter: Annotated[
-        str,
-        typer.Option(help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images)."),
-    ] = "geometry",
-    markers: Annotated[
-        Path | None,
-        typer.Option(help="JSON file of ArUco markers that name rooms and doors (docs/markers.md)."),
-    ] = None,
-    map_colours: Annotated[
-        str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
-    ] = "image",
-    schedule_out: Annotated[
-        Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
-    ] = None,
-    replay: Annotated[Path | None, typer.Option(help="Repeat the run recorded in this file exactly.")] = None,
-    view: Annotated[
-        bool, typer.Option("--view", help="Watch it: a window, or without a display a page for a browser.")
-    ] = False,
-    record: Annotated[
-        Path | None, typer.Option(help="Record what --view would show in this .rrd file.")
-    ] = None,
-    web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
-    view_port: Annotated[int | None, typer.Option(min=1, max=65534, help=_VIEW_PORT)] = None,
-    view_address: Annotated[str | None, typer.Option(metavar="IP", help=_VIEW_ADDRESS)] = None,
-    save_atlas: Annotated[
-        Path | None, typer.Option(help="Save all maps in this file at the end, Ctrl-C included.")
-    ] = None,
-    load_atlas: Annotated[Path | None, typer.Option(help="Go on in the maps of this file.")] = None,
-    localise_only: Annotated[
-        bool,
-        typer.Option(
-            "--localise-only", help="Only locate the camera in --load-atlas; the maps stay as they are."
-        ),
-    ] = False,
-    autosave: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS",
-            min=0.1,
-            max=86400,
-            help="Save this often meanwhile too, in --save-atlas or atlas.vsg in --out.",
-        ),
-    ] = None,
-    frame_timeout: Annotated[
-        float,
-        typer.Option(
-            metavar="SECONDS",
-            min=0.1,
-            help="Skip a frame whose images cannot be read within this time (a network disk that stalls).",
-        ),
-    ] = 10.0,
-    overwrite: Annotated[
-        bool,
-        typer.Option("--overwrite", help="Let --save-atlas replace a file that the run does not start from."),
-    ] = False,
-    keep: Annotated[
-        int,
-        typer.Option(
-            min=0, help="Versions of the atlas from before the run to keep: FILE.1 (the last), FILE.2, ..."
-        ),
-    ] = 1,
-) -> None:
-    """Track a camera through a recorded sequence: trajectory, map, scene graph, floor plan."""
-    from vsgraphs.cli.output import results_folder
-
-    with told(), results_folder(out, source) as folder:
-        from vsgraphs.cli.run import RunRequest, run_sequence
-        from vsgraphs.cli.viewing import Showing
-
-        shortcuts = {
-            "system.mode": mode,
-            "system.execution": execution,
-            "system.realtime": realtime or None,
-            "system.seed": seed,
-            "system.schedule_out": None if schedule_out is None else str(schedule_out),
-            "system.replay": None if replay is None else str(replay),
-            "system.localise_only": localise_only or None,
-        }
-        request = RunRequest(
-            source=source,
-            out=folder,
-            camera=camera,
-            max_frames=max_frames,
-            segmenter=segmenter,
-            map_colours=map_colours,
-            markers=markers,
-            config_file=config,
-            assignments=list(set_ or []),
-            save_atlas=save_atlas,
-            load_atlas=load_atlas,
-            autosave_s=autosave,
-            frame_timeout_s=frame_timeout,
-            overwrite=overwrite,
-            keep=keep,
-            shortcuts={key: value for key, value in shortcuts.items() if value is not None},
-            showing=Showing(view, record, view_port, web, view_address),
-        )
-        code = run_sequence(request)
-    raise typer.Exit(code)
+app.command(epilog=examples.RUN)(run)
 
 
 @app.command("eval", epilog=examples.EVAL)
@@ -254,8 +98,8 @@ def view(
     record: Annotated[
         Path | None, typer.Option(help="Write what is shown to this .rrd file; no window opens.")
     ] = None,
-    view_port: Annotated[int | None, typer.Option(min=1, max=65534, help=_VIEW_PORT)] = None,
-    view_address: Annotated[str | None, typer.Option(metavar="IP", help=_VIEW_ADDRESS)] = None,
+    view_port: Annotated[int | None, typer.Option(min=1, max=65534, help=VIEW_PORT)] = None,
+    view_address: Annotated[str | None, typer.Option(metavar="IP", help=VIEW_ADDRESS)] = None,
 ) -> None:
     """Open a finished run: map, walls, rooms and the graph above them."""
     with told():

@@ -32,8 +32,9 @@ def leave_at_once() -> None:
 
 
 def let_die() -> None:
-    """From now on the signals kill the process as the system does: when all is done and told. But for SIGHUP, which
-    comes more than once, and would then change the exit code.
+    """From now on the signals kill the process as the system does: when all is done and told.
+
+    But for SIGHUP: it comes more than once, and would then change the exit code.
     """
     for number in _heeded():
         signal.signal(number, signal.SIG_IGN if number == signal.SIGHUP else signal.SIG_DFL)
