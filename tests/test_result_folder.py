@@ -9,6 +9,8 @@ from pathlib import Path
 import fake_core
 import pytest
 
+from vsgraphs.cli.atlas_files import AtlasFiles
+from vsgraphs.cli.atlas_target import AtlasTarget
 from vsgraphs.cli.ending import _AtlasSaver
 from vsgraphs.cli.result_folder import ResultFolder, Write, new_folder_beside
 from vsgraphs.errors import InputError
@@ -190,7 +192,7 @@ class Map:
     def __init__(self, keyframes: int) -> None:
         self.empty = keyframes == 0
 
-    def save(self, path: Path, keep: int) -> str:  # noqa: ARG002
+    def save(self, path: Path, keep: int) -> str:
         write_atomically(path, "atlas")
         return "atlas"
 

@@ -64,9 +64,14 @@ class AtlasTarget:
         return moved
 
     def save_beside(self, atlas: Any) -> None:
-        """Where `save` failed for reasons that may lie in that very file."""
+        """Where `save` failed for reasons that may lie in that very file. Where this fails, `path` stays."""
+        before = self.path, self._known, self._keep
         self._give_way()
-        self.save(atlas)
+        try:
+            self.save(atlas)
+        except Exception:
+            self.path, self._known, self._keep = before
+            raise
 
     def save_in(self, folder: Path, atlas: Any) -> None:
         """Writes it into another folder instead, under a name that is free there; `path` stays where that
