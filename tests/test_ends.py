@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pty
-import resource
 import shutil
 import signal
 import subprocess
@@ -19,7 +18,7 @@ from types import SimpleNamespace
 import fake_core
 import numpy as np
 import pytest
-from conftest import Program, one_line_error, report
+from conftest import one_line_error, report
 
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.run import RunRequest, run_sequence
@@ -287,20 +286,6 @@ def test_nowhere_to_write_to_is_one_line(recorded: Path, tmp_path: Path) -> None
         told, errors = process.communicate(timeout=60)
     done = subprocess.CompletedProcess([], process.returncode, told, errors)
     assert "trajectory.txt: Not a directory, nor" in one_line_error(done)
-
-
-def test_a_full_disk_costs_what_does_not_fit(recorded: Path, tmp_path: Path, vsgraphs: Program) -> None:
-    def small_disk() -> None:  # of each file, as much as a disk that is nearly full
-        resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
-
-    done = vsgraphs("run", recorded, "--out", tmp_path / "out", preexec_fn=small_disk)
-    line = one_line_error(done)
-    assert "File too large, nor " in line
-    missing, _, written = line.partition("; written: ")
-    assert "map.ply" in missing
-    assert "trajectory.txt" in written
-    assert len(read_tum_trajectory(tmp_path / "out" / "trajectory.txt")) == 60
-    assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 # Ctrl-C at any time

@@ -16,6 +16,7 @@ from conftest import report
 from fake_core import Slam
 from tiny_models import colour_model, write_sidecar
 
+from vsgraphs.cli.ending import _drain as drain
 from vsgraphs.cli.run import RunRequest, run_sequence
 from vsgraphs.cli.ending import _drain as drain
 from vsgraphs.errors import FrameError, InputError
