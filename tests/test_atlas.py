@@ -234,7 +234,7 @@ def test_files_that_are_no_atlas(recorded: Path, walked: Path, tmp_path: Path, v
             "was saved in version 3 of the atlas format, and this vsgraphs reads up to version 2; update",
         ),
         (tmp_path / "missing", "cannot read"),
-        (tmp_path, "no ordinary file"),
+        (tmp_path, "it is a folder"),
     ):
         run = ("run", recorded, "--out", tmp_path / "o", "--load-atlas", path)
         for command in (run,) if path.is_dir() else (run, ("info", path)):  # info of a directory: of a run

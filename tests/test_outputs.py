@@ -44,7 +44,7 @@ def test_a_link_is_followed_and_stays(tmp_path: Path) -> None:
     (tmp_path / "a").symlink_to("b")
     (tmp_path / "b").symlink_to("a")
     for path in (tmp_path / "a", Path("/dev/full"), tmp_path):
-        with pytest.raises(InputError, match=f"cannot write {path}: it is no ordinary file"):
+        with pytest.raises(InputError, match=f"cannot write {path}: "):
             write_atomically(path, "x")
 
 

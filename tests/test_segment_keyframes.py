@@ -18,7 +18,6 @@ from tiny_models import colour_model, write_sidecar
 
 from vsgraphs.cli.ending import _drain as drain
 from vsgraphs.cli.run import RunRequest, run_sequence
-from vsgraphs.cli.ending import _drain as drain
 from vsgraphs.errors import FrameError, InputError
 from vsgraphs.segment import KeyframeSegmentation, Segmentation, SurfaceRole, attach
 from vsgraphs.segment.segmentation import checked

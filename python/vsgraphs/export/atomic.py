@@ -23,7 +23,11 @@ def write_atomically(path: Path, content: str | bytes) -> None:
         beside = target.with_name(f".{target.name}.{os.getpid()}.part")
     except InputError:
         raise
-    except (OSError, ValueError) as error:  # a name that is too long, or none
+    except (
+        OSError,
+        ValueError,
+        RuntimeError,
+    ) as error:  # too long a name; a circle of links
         raise InputError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from None
     _unfinished.add(beside)
     try:
