@@ -88,7 +88,7 @@ def _run_sequence(request: RunRequest, locks: Locks) -> int:
         progress = Progress(len(frames))
         mode = config.get("system.mode")
         folder = ResultFolder(request.out, expected_files(mode, atlas.save_to), progress.event)
-        with Interrupt(folder.last_words) as interrupt:
+        with Interrupt(folder.last_words, locks.release) as interrupt:
             interrupt.at_first(loaded.stop, slam.stop, partial(progress.event, _INTERRUPTED))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
             markers = _markers_beside_tracking(slam, sought, config)
