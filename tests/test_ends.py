@@ -142,6 +142,23 @@ def test_a_signal_is_heard_while_the_main_thread_is_busy_and_told_to_all() -> No
     assert not [thread for thread in threading.enumerate() if thread.name == "signals"]
 
 
+def test_the_end_does_not_wait_for_a_disk() -> None:
+    script = (
+        "import signal, threading\n"
+        "from vsgraphs.cli.interrupt import Interrupt\n"
+        "with Interrupt(lambda: 'last words', threading.Event().wait):\n"
+        "    print('begun', flush=True)\n"
+        "    threading.Event().wait()\n"
+    )
+    with started(script=script) as process:
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=10)
+    assert process.returncode == 130
+    assert errors == "last words\n"
+
+
 def test_a_signal_of_a_forked_child_is_its_own() -> None:
     with Interrupt() as interrupt:
         child = os.fork()

@@ -20,6 +20,8 @@ EXIT_SIGNAL = 128  # plus the signal's number: what shells show
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 # A program that started this one may pass on the signal that the terminal sent to both.
 _SAME_S = 0.1
+# How long what stays of unfinished files may take to remove: the disk may be what does not answer.
+_TIDYING_S = 0.3
 # The end of a pipe that the system writes signals to. A forked child must not write its own there.
 _listening: set[int] = set()
 os.register_at_fork(after_in_child=lambda: signal.set_wakeup_fd(-1) if _listening else None)
@@ -44,13 +46,17 @@ class Interrupt:
     """While entered, the first signal only sets a flag; Ctrl-C after it (or SIGTERM twice) ends the process.
 
     Signals are heard on a thread of their own, so at once, whatever the main thread is busy with. `exit_code`
-    is the shell's for the signal that came (130, 143, 129), 0 if none came. last_words: called when the
-    process is about to end; what it returns is said.
+    is the shell's for the signal that came (130, 143, 129), 0 if none came. When the process is about to end
+    what last_words returns is said, and tidy is called, but not waited for if it takes long.
     """
 
-    def __init__(self, last_words: Callable[[], str] = lambda: "interrupted") -> None:
+    def __init__(
+        self,
+        last_words: Callable[[], str] = lambda: "interrupted",
+        tidy: Callable[[], object] = lambda: None,
+    ) -> None:
         self.signal: int | None = None
-        self._last_words = last_words
+        self._last_words, self._tidy = last_words, tidy
         self._at_first: list[Callable[[], object]] = []
         self._came_at = 0.0
         self._before: dict[int, Any] = {}
@@ -110,7 +116,7 @@ class Interrupt:
             words = "interrupted"
             with contextlib.suppress(Exception):
                 words = self._last_words()
-            _end_process(number, words)
+            _end_process(number, words, self._tidy)
 
     def _is_second(self, number: int) -> bool:
         # Whoever hangs up or shuts down says so in several ways: no sign of impatience.
@@ -130,13 +136,21 @@ def _leave(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
     _end_process(number, "interrupted")
 
 
-def _end_process(number: int, words: str) -> None:
+def _end_process(number: int, words: str, tidy: Callable[[], object] = lambda: None) -> None:
     """No handlers, no threads, no destructors: nothing that could wait or fail."""
     _say(words)
-    for name, clear_up in (("atomic", "remove_unfinished"), ("lock", "remove_lock_files")):
-        module = sys.modules.get(f"vsgraphs.export.{name}")
-        if module is not None:
-            getattr(module, clear_up)()
+
+    def tidy_all() -> None:
+        for name, remove in (("atomic", "remove_unfinished"), ("lock", "remove_lock_files")):
+            module = sys.modules.get(f"vsgraphs.export.{name}")
+            if module is not None:
+                getattr(module, remove)()
+        tidy()
+
+    with contextlib.suppress(Exception):
+        tidying = threading.Thread(target=tidy_all, daemon=True)
+        tidying.start()
+        tidying.join(_TIDYING_S)
     os._exit(EXIT_SIGNAL + number)
 
 

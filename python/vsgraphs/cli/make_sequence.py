@@ -42,7 +42,7 @@ def make_sequence(
     """
     began = time.monotonic()
     bar = _Bar()
-    with Interrupt(partial(_discard, out)) as interrupt:
+    with Interrupt(lambda: "interrupted: nothing was kept", partial(_discard, out)) as interrupt:
         done = simulate(
             plan,
             out,
@@ -69,10 +69,9 @@ def make_sequence(
     return interrupt.exit_code
 
 
-def _discard(out: Path) -> str:
+def _discard(out: Path) -> None:
     """For a process that ends before the frames so far have become a sequence."""
     shutil.rmtree(part_of(out), ignore_errors=True)
-    return "interrupted: nothing was kept"
 
 
 class _Bar:
