@@ -114,7 +114,9 @@ int keep_previous(const std::filesystem::path& file, int keep) {
   if (keep <= 0 || !std::filesystem::exists(file, ignored) || same_file(file, newest)) return 0;
   ::unlink(beside.c_str());
   int error = ::link(file.c_str(), beside.c_str()) == 0 ? 0 : copy_to_disk(file, beside);
-  for (int i = keep; error == 0 && i > 1; --i) {
+  int last = 1;  // what lies behind the first free number is not ours to move
+  while (last < keep && std::filesystem::exists(kept(file, last), ignored)) ++last;
+  for (int i = last; error == 0 && i > 1; --i) {
     if (::rename(kept(file, i - 1).c_str(), kept(file, i).c_str()) != 0 && errno != ENOENT) error = errno;
   }
   if (error == 0 && ::rename(beside.c_str(), newest.c_str()) != 0) error = errno;

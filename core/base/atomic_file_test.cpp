@@ -199,8 +199,8 @@ TEST_F(AtomicFile, SaysWhatCannotBeWritten) {
 
 TEST_F(AtomicFile, ReadsABeginning) {
   write("0123456789");
-  EXPECT_EQ(read_file(file_, 4).size, 4U);
-  EXPECT_EQ(read_file(file_, 40).size, 10U);
+  EXPECT_EQ(read_file(file_, SIZE_MAX, 4).size, 4U);
+  EXPECT_EQ(read_file(file_, SIZE_MAX, 40).size, 10U);
 }
 
 TEST_F(AtomicFile, SaysWhatCannotBeRead) {

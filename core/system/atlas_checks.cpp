@@ -55,9 +55,7 @@ bool is_text(const std::string& text) {
   return to_come == 0;
 }
 
-}  // namespace
-
-Wrong wrong_with_map_state(const MapState& state) {
+Wrong wrong_with(const MapState& state) {
   if (state.map->keyframes().index_bound() > PlaceSegment::most_keyframes)
     return "it numbers more keyframes than there can be";
   if (state.places) {
@@ -69,12 +67,25 @@ Wrong wrong_with_map_state(const MapState& state) {
   return state.free_space ? wrong_with_free_space(*state.free_space, *state.map) : nullptr;
 }
 
+}  // namespace
+
+Wrong wrong_with_maps(const AtlasState& state) {
+  for (const MapState& one : state.maps) {
+    if (Wrong wrong = wrong_with_references(*one.map)) return wrong;
+    if (Wrong wrong = wrong_with_values(*one.map)) return wrong;
+  }
+  return nullptr;
+}
+
 Wrong wrong_with_atlas(const SavedAtlas& atlas) {
   if (!atlas.map_names.empty() && atlas.map_names.size() != atlas.state.maps.size())
     return "maps and names differ in number";
   if (!is_text(atlas.program) || !is_text(atlas.commit) || !is_text(atlas.configuration) ||
       !std::all_of(atlas.map_names.begin(), atlas.map_names.end(), is_text))
     return "a text that is none";
+  for (const MapState& state : atlas.state.maps) {
+    if (Wrong wrong = wrong_with(state)) return wrong;
+  }
   if (share_ids(atlas.state)) return "ids that are not its maps' own";
   return nullptr;
 }

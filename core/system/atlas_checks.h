@@ -1,4 +1,4 @@
-// Whether an atlas that was read can be one, beyond what each map says of itself (core/map/map_checks.h).
+// Whether an atlas, read or about to be written, can be one.
 #pragma once
 
 #include "core/map/map_checks.h"
@@ -7,7 +7,8 @@
 namespace vsgraphs {
 
 // What is wrong, in a few words; nullptr if all is well. Linear in the atlas.
-Wrong wrong_with_map_state(const MapState& state);
+Wrong wrong_with_maps(const AtlasState& state);
+// Beyond that: with what belongs to the maps, and with all of them together.
 Wrong wrong_with_atlas(const SavedAtlas& atlas);
 
 }  // namespace vsgraphs

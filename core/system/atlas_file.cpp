@@ -26,7 +26,6 @@ MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
     archive.read(name + "/free_space", *free_space);
     state.free_space = std::move(free_space);
   }
-  if (Wrong wrong = wrong_with_map_state(state)) archive.damaged(wrong);
   return state;
 }
 
@@ -63,10 +62,10 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   ArchiveReader archive(name, bytes, atlas_kind);
   SavedAtlas atlas;
   atlas.format = archive.version();
-  read_lineage(archive, atlas);
   archive.read("origin", atlas.program, atlas.commit);
   archive.read("camera", atlas.camera);
   archive.read("configuration", atlas.configuration);
+  read_lineage(archive, atlas);
   try {
     atlas.camera.validate();
   } catch (const InputError& error) {
@@ -84,6 +83,9 @@ std::uint64_t save_atlas(const std::filesystem::path& path, const SavedAtlas& at
   std::error_code ignored;
   require_input(!is_empty(atlas.state) || !std::filesystem::exists(path, ignored),
                 "cannot write " + path.string() + ": a map without keyframes does not replace a file");
+  for (Wrong wrong : {wrong_with_maps(atlas.state), wrong_with_atlas(atlas)})
+    require_input(!wrong, "cannot write " + path.string() + ": the maps could not be loaded again (" +
+                              (wrong ? wrong : "") + ")");
   ArchiveWriter archive(atlas_kind);
   write_atlas(archive, atlas);
   const auto parts = archive.finish();

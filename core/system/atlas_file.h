@@ -29,9 +29,9 @@ struct SavedAtlas {
 };
 
 // Writes the file as a whole or not at all; returns its revision, which follows from the content alone. The newest `keep`
-// previous versions stay (write_file_atomically). A map without keyframes never replaces a file: InputError, as for whatever else
-// goes wrong, naming the file and the cause; an old file then stays. Any thread: the state is values. Cost: linear in the
-// keyframes, and one copy of it all in memory.
+// previous versions stay (write_file_atomically). Maps without keyframes never replace a file, nor are maps written that could
+// not be loaded again: InputError, as for whatever else goes wrong, naming the file and the cause; an old file then stays. Any
+// thread: the state is values. Cost: linear in the keyframes, and one copy of it all in memory.
 std::uint64_t save_atlas(const std::filesystem::path& path, const SavedAtlas& atlas, int keep = 0);
 // Of the file's first bytes, whether what follows is whole or not; empty where no atlas can be read.
 std::optional<std::uint64_t> atlas_revision(const std::filesystem::path& path);

@@ -13,9 +13,11 @@
 namespace vsgraphs {
 namespace {
 
-// Two keyframes with landmarks and depth; `first_name` sets how the points look, so that two maps differ.
-MapState some_map(int first_name) {
+// Two keyframes with landmarks and depth; `first_name` sets how the points look, so that two maps differ, and `first` where
+// ids begin.
+MapState some_map(int first_name, const FirstIds& first) {
   Map map;
+  map.apply(OpenMap{first, 0});
   const Camera camera;
   const auto points = test::point_grid(8, 6);
   std::vector<KeyframeId> keyframes;
@@ -39,7 +41,7 @@ MapState some_map(int first_name) {
 
 SavedAtlas some_atlas() {
   SavedAtlas atlas;
-  atlas.state.maps = {some_map(0), some_map(100)};
+  atlas.state.maps = {some_map(0, {}), some_map(100, {64, 64, 64})};
   atlas.state.maps[0].free_space = nullptr;  // as a map has it on which nothing goes on
   atlas.camera.distortion = {0.1, -0.2, 0.001, 0.002, 0};
   atlas.configuration = configuration_text(Config{});
@@ -77,7 +79,7 @@ TEST(AtlasFile, SavingWhatWasLoadedGivesTheSameBytes) {
   EXPECT_EQ(back.state.maps[1].places->size(), 2);
   // What a keyframe and the free space share is one object again.
   const Map& map = *back.state.maps[1].map;
-  const KeyframeId first = map.keyframes().at_index(0);
+  const KeyframeId first = map.keyframes().at_index(64);
   EXPECT_EQ(map.keyframes().find(first)->surface, back.state.maps[1].free_space->views().at(first).depth);
   EXPECT_EQ(back.map_names, atlas.map_names);
   EXPECT_EQ(back.program, "1.2.3");
@@ -168,6 +170,23 @@ TEST(AtlasFile, AMapWithoutKeyframesReplacesNothing) {
   std::filesystem::remove(path.string() + ".1");
 }
 
+TEST(AtlasFile, WhatCouldNotBeLoadedAgainReplacesNothing) {
+  const std::filesystem::path path = testing::TempDir() + "atlas_file_test_wild.vsg";
+  const std::uint64_t house = save_atlas(path, some_atlas());
+  SavedAtlas wild = some_atlas();
+  Map map = *wild.state.maps[1].map;
+  map.apply(MoveKeyframe{map.keyframes().at_index(64), test::standing_at(1e300)});
+  wild.state.maps[1].map = map.snapshot();
+  try {
+    save_atlas(path, wild);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("could not be loaded again (a keyframe that is nowhere"));
+  }
+  EXPECT_EQ(atlas_revision(path), house);
+  std::filesystem::remove(path);
+}
+
 TEST(AtlasFile, MapsWithoutKeyframesAndNoMapsAreAtlasesToo) {
   SavedAtlas atlas;
   EXPECT_TRUE(is_empty(read_atlas("FILE", bytes_of(atlas)).state));
@@ -215,6 +234,39 @@ TEST(AtlasFile, ForgedSectionsAreErrorsOrAtlases) {
   }
   EXPECT_GT(errors, 50);
   EXPECT_GT(atlases, 50);
+}
+
+std::string error_of(const SavedAtlas& atlas) { return error_of(bytes_of(atlas)); }
+
+TEST(AtlasFile, MapsHaveIdsOfTheirOwn) {
+  SavedAtlas atlas = some_atlas();
+  EXPECT_EQ(error_of(atlas), "");
+  atlas.state.maps[1] = some_map(100, {});
+  EXPECT_THAT(error_of(atlas), testing::HasSubstr("ids that are not its maps' own"));
+  atlas.map_names.clear();
+  Map ahead = *atlas.state.maps[0].map;
+  ahead.apply(OpenMap{{64, 1U << 25, 64}, 0});
+  atlas.state.maps = {{ahead.snapshot(), nullptr, nullptr}};
+  EXPECT_THAT(error_of(atlas), testing::HasSubstr("damaged"));
+}
+
+TEST(AtlasFile, ThePlaceIndexIsOfLivingKeyframes) {
+  SavedAtlas atlas = some_atlas();
+  atlas.state.maps[0].places = atlas.state.maps[1].places;
+  EXPECT_THAT(error_of(atlas), testing::HasSubstr("a place index of a keyframe that does not exist"));
+}
+
+TEST(AtlasFile, TextsAreTexts) {
+  SavedAtlas atlas = some_atlas();
+  atlas.map_names = {
+      "K\xc3\xbc"
+      "che",
+      "\xe2\x82\xac \xf0\x9f\x8f\xa0"};
+  EXPECT_EQ(error_of(atlas), "");
+  for (const char* odd : {"\xc3", "\xff", "a\x80", "\xe2\x82", "\xc3\xbc\xbc", "\xf8\x88\x80\x80\x80"}) {
+    atlas.program = odd;
+    EXPECT_THAT(error_of(atlas), testing::HasSubstr("a text that is none")) << odd;
+  }
 }
 
 TEST(AtlasFile, AMissingSectionIsNamed) {

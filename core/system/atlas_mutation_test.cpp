@@ -178,7 +178,7 @@ class AtlasMutations : public testing::Test {
 TEST_F(AtlasMutations, AreRefusedOrCanBeGoneOnIn) {
   ASSERT_EQ(read_atlas("FILE", whole_).state.maps.size(), 2U);
   const char* wanted = std::getenv("VSGRAPHS_MUTATIONS");
-  const int rounds = wanted ? std::atoi(wanted) : 200;
+  const int rounds = wanted ? std::atoi(wanted) : 120;
   int refused = 0, gone_on_in = 0;
   for (int round = 0; round < rounds; ++round) {
     Rng rng(4, "atlas_mutation_test", static_cast<std::uint64_t>(round));
