@@ -50,6 +50,10 @@ def wait_until(there: Callable[[], object], limit_s: float = 60.0) -> None:
         time.sleep(0.02)
 
 
+def names_in(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
 def opened(process: subprocess.Popen[str]) -> None:
     """Waits until the sequence is open and the results' folder made."""
     assert process.stdout is not None
@@ -292,6 +296,20 @@ def test_results_of_a_folder_that_is_gone_are_beside_it(recorded: Path, tmp_path
     assert any(f"the results are in {beside}" in line for line in run["warnings"])
     assert {*FIRST, "map.vsg", "map.ply", "timeline.json"} <= {path.name for path in beside.iterdir()}
     assert not out.exists()
+
+
+def test_a_folder_that_is_another_run_s_by_now_is_left_alone(recorded: Path, tmp_path: Path) -> None:
+    out = tmp_path / "results"
+    with started("run", recorded, "--out", out, "--realtime", "--max-frames", 25) as process:
+        opened(process)
+        shutil.rmtree(out)
+        out.mkdir()
+        (out / ".lock").write_text("of another run")
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert f"what this run left is in {tmp_path / 'results-2'}" in errors
+    assert names_in(out) == [".lock"]
+    assert report(tmp_path / "results-2")["frames"] == 25
 
 
 def test_nowhere_to_write_to_is_one_line(recorded: Path, tmp_path: Path) -> None:

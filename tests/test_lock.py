@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import fcntl
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -166,3 +167,18 @@ def test_never_two_at_once(tmp_path: Path) -> None:
     programs = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(3)]
     assert [program.communicate(timeout=120)[0] for program in programs] == ["50\n"] * 3
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_was_made_anew_is_held_no_more(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    with Locks(print) as locks:
+        locks.hold_folder(out)
+        assert locks.still_holds_folder(out)
+        assert locks.still_holds_folder(tmp_path)  # was never held: nothing was lost
+        shutil.rmtree(out)
+        assert locks.still_holds_folder(out)  # nobody else has it
+        out.mkdir()
+        with Locks(print) as others:
+            others.hold_folder(out)
+            assert not locks.still_holds_folder(out)

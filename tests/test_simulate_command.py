@@ -10,7 +10,10 @@ import pytest
 from conftest import Program, one_line_error
 
 from vsgraphs.datasets import open_sequence
+from vsgraphs.errors import InputError
+from vsgraphs.export.lock import Locks
 from vsgraphs.plans import building
+from vsgraphs.simulate.folder import FolderInTheMaking
 
 
 def test_a_few_frames_of_an_included_plan(tmp_path: Path, vsgraphs: Program) -> None:
@@ -103,3 +106,20 @@ def test_mistakes_in_choosing_a_plan(
 ) -> None:
     assert message in one_line_error(vsgraphs("simulate", *options, cwd=tmp_path))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_second_program_is_kept_from_the_same_folder(tmp_path: Path, vsgraphs: Program) -> None:
+    out = tmp_path / "out"
+    with Locks(print) as locks:
+        locks.hold_file(out)
+        error = one_line_error(vsgraphs("simulate", "demo", "--out", out, "--frames", 2))
+        assert "another vsgraphs writes there" in error
+    assert not out.exists()
+    making = FolderInTheMaking(out, overwrite=False)
+    with making:
+        (making.path / "mine").touch()
+        out.mkdir()
+        (out / "another's").touch()
+        with pytest.raises(InputError, match="is not empty"):
+            making.keep()
+    assert [path.name for path in out.iterdir()] == ["another's"]

@@ -31,6 +31,7 @@ class AtlasFiles:
     target: AtlasTarget | None = None
     every_s: float | None = None
     warnings: list[str] = field(default_factory=list)
+    before_a_line: Callable[[], object] = lambda: None  # takes away what a progress line shows
     _make: Callable[[Any], Any] = field(init=False, repr=False)  # a Slam -> its Atlas
     _saved: tuple[int, int] | None = None  # keyframes and version of the map when it was saved last
 
@@ -96,6 +97,7 @@ class AtlasFiles:
             return
         atlas = self._make(slam)
         if atlas.empty and self.target.occupied():
+            self.before_a_line()
             print(f"{self.target.path}: left as it is, since this run has mapped nothing", flush=True)
             return
         try:
@@ -106,9 +108,11 @@ class AtlasFiles:
                 self.target.save_beside(atlas)
             except Exception:
                 raise error from None
+            self.before_a_line()
             _warn(f"{error}; saved in another file instead of {wanted}")
         size_mb = self.target.path.stat().st_size / 1e6
         what = "an empty map" if atlas.empty else _told(atlas)
+        self.before_a_line()
         print(f"saved in {self.target.path}: {what}, {size_mb:.1f} MB", flush=True)
 
     @property

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from vsgraphs.cli.interrupt import Interrupt
     from vsgraphs.cli.progress import Progress
     from vsgraphs.cli.result_folder import ResultFolder
+    from vsgraphs.export.lock import Locks
     from vsgraphs.markers import KeyframeMarkers
     from vsgraphs.segment import KeyframeSegmentation
 
@@ -80,13 +81,18 @@ def leave_results(
     atlas: AtlasFiles,
     failure: Exception | None,
     progress: Progress,
+    locks: Locks,
 ) -> tuple[dict[str, Any], Exception | None]:
     """Writes results and atlas, each even where others cannot be: run.json's content, first trouble.
 
     A run that tracked nothing leaves an earlier run's results alone.
     """
     report: dict[str, Any] = {}
-    if not outcome.tally.tracked and holds_a_trajectory(folder.folder):
+    progress.clear()
+    atlas.before_a_line = progress.clear
+    if not locks.still_holds_folder(folder.folder):
+        folder.leave_alone(f"{folder.folder} was removed, and made anew by another program")
+    elif not outcome.tally.tracked and holds_a_trajectory(folder.folder):
         folder.leave_alone(f"nothing was tracked: the results of an earlier run in {folder.folder} stay")
     saver = _AtlasSaver(atlas, outcome.slam, progress.event)
     saving = [(str(atlas.save_to), saver.write)] if atlas.save_to is not None else []

@@ -87,6 +87,9 @@ class Interrupt:
     def at_first(self, *calls: Callable[[], object]) -> None:
         """Has them called when the first signal comes, on another thread. They must not wait for long."""
         self._at_first += calls
+        if self.requested():  # it came before there was anybody to call
+            for call in calls:
+                call()
 
     def requested(self) -> bool:
         """Whether a signal has come."""

@@ -15,6 +15,7 @@ from vsgraphs.cli.progress import Progress
 from vsgraphs.cli.session import Tally
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
+from vsgraphs.export.lock import Locks
 from vsgraphs.plans import plan_text
 from vsgraphs.simulate import Output, simulate
 from vsgraphs.simulate.folder import part_of
@@ -42,7 +43,11 @@ def make_sequence(
     """
     began = time.monotonic()
     bar = _Bar()
-    with Interrupt(lambda: "interrupted: nothing was kept", partial(_discard, out)) as interrupt:
+    with (
+        Locks(lambda line: print(f"warning: {line}", file=sys.stderr)) as locks,
+        Interrupt(lambda: "interrupted: nothing was kept", partial(_discard, out)) as interrupt,
+    ):
+        hold(locks, out)
         done = simulate(
             plan,
             out,
@@ -67,6 +72,15 @@ def make_sequence(
         f"({took:.1f} s, {done.frames / took:.1f} frames/s)"
     )
     return interrupt.exit_code
+
+
+def hold(locks: Locks, out: Path) -> None:
+    """Keeps a second program from making the same folder. Raises InputError."""
+    try:
+        out.absolute().parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot create {out}: {error.strerror or error}") from None
+    locks.hold_file(out)
 
 
 def _discard(out: Path) -> None:

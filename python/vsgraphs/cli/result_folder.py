@@ -22,16 +22,22 @@ class ResultFolder:
     and all of them go there. What can be written nowhere is left out and named in the end.
 
     names: the files that will be written, for `last_words` before `write` has come to them. tell: for lines
-    a person should see.
+    a person should see. hold: keeps other programs out of a folder that was made beside.
     """
 
-    def __init__(self, out: Path, names: Sequence[str], tell: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        out: Path,
+        names: Sequence[str],
+        tell: Callable[[str], None],
+        hold: Callable[[Path], object] = lambda _: None,
+    ) -> None:
         self.folder = self._out = out
         # As long as there is a working directory; "." has no name.
         self._absolute = out.absolute() if out.name not in ("", "..") else out.resolve()
         self.warnings: list[str] = []
         self._names = list(dict.fromkeys(names))
-        self._tell = tell
+        self._tell, self._hold = tell, hold
         self._written: dict[str, Write] = {}
         self._missing: dict[str, str] = {}  # and why
         self._defect: Exception | None = None
@@ -50,6 +56,7 @@ class ResultFolder:
             self.folder = new_folder_beside(self._absolute)
         except OSError as error:
             raise InputError(f"{why}; no folder can be made beside it: {error.strerror or error}") from None
+        self._hold(self.folder)
         self.warnings.append(f"{why}; what this run left is in {self.folder}")
         self._tell(f"warning: {self.warnings[-1]}")
 
@@ -101,6 +108,7 @@ class ResultFolder:
                 beside.rmdir()
             return
         self.folder = beside
+        self._hold(beside)
         self._tell(f"warning: {self.warnings[-1]}")
         for earlier, again in list(self._written.items()):
             if earlier != name and self._attempt(earlier, again, beside) is not None:

@@ -99,7 +99,8 @@ def write_results(
     run_json = [("run.json", _file("run.json", figures))]
     folder.write([*first, *atlas, *run_json], show)
     if outcome.view is not None:
-        show("closing the view")
+        if outcome.view.report() is not None:
+            show("closing the view")
         outcome.view.close()  # what came of it is written too
     folder.write([(name, _file(name, content)) for name, content in files.items()], show)
     folder.write(run_json, show)  # again, with the CPU and memory of the whole process

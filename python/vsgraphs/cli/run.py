@@ -87,7 +87,8 @@ def _run_sequence(request: RunRequest, locks: Locks) -> int:
         slam = atlas.start(core(), config, sequence.camera)
         progress = Progress(len(frames))
         mode = config.get("system.mode")
-        folder = ResultFolder(request.out, expected_files(mode, atlas.save_to), progress.event)
+        names = expected_files(mode, atlas.save_to)
+        folder = ResultFolder(request.out, names, progress.event, locks.hold_folder)
         with Interrupt(folder.last_words) as interrupt:
             interrupt.at_first(loaded.stop, slam.stop, partial(progress.event, _INTERRUPTED))
             pacing = Realtime(interrupt.requested) if config.get("system.realtime") else AsFastAsPossible()
@@ -107,9 +108,11 @@ def _run_sequence(request: RunRequest, locks: Locks) -> int:
             outcome = _outcome(request, sequence, config, slam, session.tally, began)
             outcome.segmentation, outcome.view, outcome.warnings = segmentation, view, atlas.warnings
             outcome.markers = _marker_outcome(request, sought, markers)
-            report, failure = leave_results(outcome, folder, atlas, failure, progress)
+            report, failure = leave_results(outcome, folder, atlas, failure, progress, locks)
+    if report.get("tracked"):
+        print(summarise(report, folder.folder), flush=True)
     _raise_where_in_vain(request, session.tally, report, failure)
-    print(summarise(report, folder.folder))
+    locks.release()  # all is written: the next run need not wait for somebody who only looks
     view.linger(folder.folder)
     return interrupt.exit_code
 

@@ -121,12 +121,14 @@ def run(
     ] = 10.0,
     overwrite: Annotated[
         bool,
-        typer.Option("--overwrite", help="Let --save-atlas replace a file that the run does not start from."),
+        typer.Option("--overwrite", help="Let the run replace an atlas that it does not start from."),
     ] = False,
     keep: Annotated[
         int,
         typer.Option(
-            min=0, help="Versions of the atlas from before the run to keep: FILE.1 (the last), FILE.2, ..."
+            min=0,
+            max=1000,
+            help="Versions of the atlas from before the run to keep: FILE.1 (the last), FILE.2, ...",
         ),
     ] = 1,
 ) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from vsgraphs.cli.summary import RESULT_FILES, count, what_was_found
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_json
 from vsgraphs.scene_graph import DoorNode, RoomNode, SceneGraph, load_scene_graph
 
 _WARNINGS = 5  # so many are printed, the rest counted
@@ -55,6 +56,8 @@ def _left_by_a_run(files: dict[str, int]) -> bool:
 
 
 def _no_run(folder: Path, files: dict[str, int]) -> str:
+    if not files and (folder / ".lock").exists():
+        return f"{folder}: a run is under way here, or was killed; it writes its files when it ends"
     if not files and not any(folder.iterdir()):
         return f"{folder} is empty: a run writes its files when it ends"
     from vsgraphs.datasets import CAMERAS, open_sequence
@@ -68,12 +71,7 @@ def _no_run(folder: Path, files: dict[str, int]) -> str:
 
 def _report(folder: Path) -> dict[str, Any]:
     path = folder / "run.json"
-    try:
-        report = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError):
-        raise InputError(f"{path}: not a whole JSON file; was it copied completely?") from None
+    report = read_json(path, "figures of a run")
     if not isinstance(report, dict) or any(not isinstance(report.get(k), t) for k, t in _EXPECTED.items()):
         raise InputError(f"{path}: not the run.json of a vsgraphs run")
     return report

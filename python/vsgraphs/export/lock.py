@@ -46,6 +46,12 @@ class Locks:
         """Holds a folder, which must be there, likewise."""
         self._hold(path / ".lock", path)
 
+    def still_holds_folder(self, path: Path) -> bool:
+        """Whether what was held by `hold_folder` is there still, and not another folder of that name."""
+        lock = path / ".lock"
+        held = [descriptor for descriptor, name in self._held if name == lock]
+        return not held or not os.path.lexists(lock) or any(_is_open_as(d, lock) for d in held)
+
     def release(self) -> None:
         """Lets go of all and removes the lock files."""
         while self._held:

@@ -21,15 +21,9 @@ class FolderInTheMaking:
     """A folder under construction beside its final place; renamed when whole, removed otherwise."""
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
-        self._final = final
+        self._final, self._overwrite = final, overwrite
         self.path = part_of(final)
-        if final.exists() and not final.is_dir():
-            raise InputError(f"output {final} is a file; give a directory")
-        if final.is_dir() and any(final.iterdir()) and not (overwrite and (final / MARK).is_file()):
-            raise InputError(
-                f"output {final} is not empty; choose another directory"
-                + ("" if overwrite else ", or allow overwriting if it is an older simulation")
-            )
+        self._require_room()
 
     def __enter__(self) -> FolderInTheMaking:
         try:
@@ -39,8 +33,19 @@ class FolderInTheMaking:
             raise InputError(f"cannot create {self._final}: {error.strerror or error}") from None
         return self
 
+    def _require_room(self) -> None:
+        final, overwrite = self._final, self._overwrite
+        if final.exists() and not final.is_dir():
+            raise InputError(f"output {final} is a file; give a directory")
+        if final.is_dir() and any(final.iterdir()) and not (overwrite and (final / MARK).is_file()):
+            raise InputError(
+                f"output {final} is not empty; choose another directory"
+                + ("" if overwrite else ", or allow overwriting if it is an older simulation")
+            )
+
     def keep(self) -> None:
-        """Puts the folder in its place."""
+        """Puts the folder in its place. Raises InputError where something has come there meanwhile."""
+        self._require_room()
         if self._final.is_dir():
             shutil.rmtree(self._final)
         self.path.replace(self._final)

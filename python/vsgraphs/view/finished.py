@@ -8,6 +8,7 @@ import numpy as np
 
 from vsgraphs.errors import InputError
 from vsgraphs.export.ply import read_ply
+from vsgraphs.reading import read_json
 from vsgraphs.scene_graph import KeyframeNode, SceneGraph, load_scene_graph, transform_points
 from vsgraphs.trajectory import read_tum_trajectory
 from vsgraphs.view.layout import gaze_at, layout
@@ -19,8 +20,13 @@ FILES = ("scene_graph.json", "map.ply", "trajectory.txt")
 
 
 def recordings(folder: Path) -> list[Path]:
-    """What `run --record` left in the directory."""
-    return sorted(folder.glob("*.rrd"))
+    """What the run recorded in the directory; not what an earlier one did, where run.json tells of none."""
+    found = sorted(folder.glob("*.rrd"))
+    if found and (folder / "run.json").is_file():
+        report = read_json(folder / "run.json", "figures of a run")
+        if isinstance(report, dict) and "view" not in report:
+            return []
+    return found
 
 
 def check_run(folder: Path) -> None:
