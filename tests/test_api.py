@@ -88,6 +88,8 @@ def test_what_is_wrong_with_an_image_is_said(scene: Scene, camera: vsgraphs.Came
         (rgb, depth, 1.0, "timestamp"),
         (rgb, depth, 0.5, "timestamp"),
         (rgb, depth, float("nan"), "timestamp"),
+        (rgb, depth, 1e300, "timestamp 1e.300 s is beyond any time in seconds"),
+        (rgb, depth, 1.7e18, "give seconds"),
     ]:
         with pytest.raises(vsgraphs.InputError, match=word) as caught:
             slam.track(bad_rgb, bad_depth, stamp)

@@ -89,7 +89,7 @@ def test_nan_timestamp_is_skipped_and_counted(tmp_path: Path) -> None:
     sequence = open_sequence(stamps_edited(long_sequence(tmp_path / "s"), {4: "nan", 9: "inf"}))
     assert len(sequence.frames) == 28
     assert sequence.skipped == {"not_finite_timestamp": 2}
-    assert "2 timestamps that are no number, skipped" in sequence.warnings[0]
+    assert "2 timestamps that are no number of seconds, skipped" in sequence.warnings[0]
 
 
 def test_repeated_and_backward_timestamps_are_skipped_and_counted(tmp_path: Path) -> None:
@@ -167,3 +167,24 @@ def test_corrupt_pixels_of_a_png_are_damage(tmp_path: Path) -> None:
     path.write_bytes(data)
     with pytest.raises(FrameError, match=r"a\.png is damaged"):
         load_depth(path, (64, 48))
+
+
+@pytest.mark.parametrize("stamp", ["1e300", "-1e300", "1700000000000000000"])
+def test_a_timestamp_beyond_all_time_is_skipped(tmp_path: Path, stamp: str) -> None:
+    folder = write_tum(tmp_path / "s", Scene(frames=6))
+    lines = (folder / "rgb.txt").read_text().splitlines()
+    lines[-1] = f"{stamp} {lines[-1].split()[1]}"
+    (folder / "rgb.txt").write_text("\n".join(lines))
+    sequence = open_sequence(folder)
+    assert len(sequence.frames) == 5
+    assert sequence.skipped == {"not_finite_timestamp": 1}
+
+
+def test_nanoseconds_are_no_seconds(tmp_path: Path) -> None:
+    folder = write_tum(tmp_path / "s", Scene(frames=6))
+    for name in ("rgb.txt", "depth.txt"):
+        rows = [line.split() for line in (folder / name).read_text().splitlines() if line[0] != "#"]
+        rows = [[f"{float(stamp) * 1e9:.0f}", file] for stamp, file in rows]
+        (folder / name).write_text("\n".join(map(" ".join, rows)))
+    with pytest.raises(InputError, match="none of the 6 timestamps is a number of seconds"):
+        open_sequence(folder)

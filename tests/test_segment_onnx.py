@@ -280,6 +280,15 @@ def test_a_model_without_inputs_or_outputs(tmp_path: Path) -> None:
     assert re.search("not an ONNX model|gives no output", refused(model, sidecar))
 
 
+def test_a_model_with_damaged_names(tmp_path: Path) -> None:
+    model = colour_model(tmp_path / "m.onnx")
+    content = model.read_bytes()
+    assert content.count(b"image") >= 2
+    model.write_bytes(content.replace(b"image", b"\xb9mage"))
+    message = refused(model, write_sidecar(tmp_path / "m.json"))
+    assert "a name in it is no text" in message or "is not an ONNX model" in message
+
+
 def test_a_model_that_never_ends_is_stopped(tmp_path: Path) -> None:
     body = helper.make_graph(
         [helper.make_node("Identity", ["go"], ["goes"]), helper.make_node("Identity", ["a"], ["b"])],

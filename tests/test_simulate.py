@@ -371,3 +371,23 @@ def test_every_key_is_documented() -> None:
 
     missing = [key for key in sorted(keys(PLAN) | set(EXTRA_KEYS)) if f"`{key}`" not in text]
     assert missing == []
+
+
+def test_a_folder_behind_a_link_or_without_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real")
+    simulate(plan(), tmp_path / "link", frames=1)
+    assert (tmp_path / "link").is_symlink()
+    assert len(open_sequence(tmp_path / "real").frames) == 1
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert simulate(plan(), "", frames=1).frames == 1
+    with pytest.raises(InputError, match="is not empty"):
+        simulate(plan(), "/", frames=1)
+
+
+@pytest.mark.parametrize("name", ["every", "labels_every", "workers"])
+def test_numbers_beyond_reason(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match=f"{name} must be at least") as caught:
+        simulate(plan(), tmp_path / "out", output=Output(**{name: 10**400}))
+    assert len(str(caught.value)) < 200

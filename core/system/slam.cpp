@@ -38,9 +38,12 @@ std::int64_t first_index_after(const AtlasState& known) {
   return next;
 }
 
+// Some thousand years; nanoseconds since 1970 are beyond it.
+constexpr double latest_s = 1e11;
+
 std::string at_time(double timestamp_s) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.6f s", timestamp_s);
+  std::snprintf(text, sizeof text, std::abs(timestamp_s) > latest_s ? "%g s" : "%.6f s", timestamp_s);
   return text;
 }
 
@@ -90,6 +93,9 @@ TrackedFrame Slam::track(RgbdFrame frame) {
                 "track() was called while another thread was in it; frames come one by one");
   require_input(!finished_, "track() was called after finish(); make a new Slam for a new run");
   require_input(std::isfinite(frame.timestamp_s), "the frame's timestamp is not a finite number");
+  require_input(
+      std::abs(frame.timestamp_s) <= latest_s,
+      "the frame's timestamp " + at_time(frame.timestamp_s) + " is beyond any time in seconds; give seconds");
   require_input(frame.timestamp_s > last_timestamp_s_, "the frame's timestamp " + at_time(frame.timestamp_s) +
                                                            " is not later than the last one's, " +
                                                            at_time(last_timestamp_s_));

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
+_CANDIDATES = 32  # so that a generous gap does not make all pairs of all
+
 
 def pair_by_time(first: list[float], second: list[float], max_gap_s: float) -> list[tuple[int, int]]:
     """One-to-one pairs (i, j) of nearest timestamps at most `max_gap_s` apart, the closest served first.
 
-    Both lists ascending, seconds. Returns pairs in order of i. Cost: n log n.
+    Both lists ascending, seconds. Returns pairs in order of i. Of each timestamp the nearest 32 before and
+    after it are candidates. Cost: n log n.
     """
     a, b = np.asarray(first), np.asarray(second)
     if not len(a) or not len(b):
         return []
-    low = np.searchsorted(b, a - max_gap_s, side="left")
-    high = np.searchsorted(b, a + max_gap_s, side="right")
+    nearest = np.searchsorted(b, a)
+    low = np.maximum(np.searchsorted(b, a - max_gap_s, side="left"), nearest - _CANDIDATES)
+    high = np.minimum(np.searchsorted(b, a + max_gap_s, side="right"), nearest + _CANDIDATES)
     candidates = [
         (abs(first[i] - second[j]), i, j) for i in range(len(a)) for j in range(int(low[i]), int(high[i]))
     ]

@@ -19,6 +19,7 @@ from vsgraphs.reading import LARGE, read_text, shown
 
 Array = npt.NDArray[np.float64]
 
+FARTHEST = 1e9  # metres from the origin; what is farther is no pose, and its square no number
 _HEADER = "# timestamp tx ty tz qx qy qz qw (world_from_camera; seconds, metres)\n"
 
 
@@ -82,11 +83,13 @@ def quaternions_from_rotations(rotations: Array) -> Array:
 def trajectory_from_rows(rows: Array, source: str) -> Trajectory:
     """(N, 8) TUM rows -> trajectory.
 
-    Rows with NaN or a zero quaternion go, disorder is sorted, of equal stamps the first stays; each repair is
-    told in `notes`.
+    Rows with NaN, a zero quaternion or numbers beyond `FARTHEST` go, disorder is sorted, of equal stamps the
+    first stays; each repair is told in `notes`.
     """
     notes: list[str] = []
-    sound = np.isfinite(rows).all(axis=1) & (np.linalg.norm(np.nan_to_num(rows[:, 4:8]), axis=1) > 1e-9)
+    near = (np.abs(rows[:, 1:8]) <= FARTHEST).all(axis=1) & np.isfinite(rows[:, 0])  # false for NaN
+    length = np.linalg.norm(np.where(near[:, None], rows[:, 4:8], 0.0), axis=1)
+    sound = near & (length > 1 / FARTHEST)
     if not sound.all():
         notes.append(f"{source}: {np.count_nonzero(~sound)} of {len(rows)} poses are not finite, skipped")
         rows = rows[sound]
@@ -112,6 +115,7 @@ def trajectory_from_matrices(timestamps: Array, poses: Array, source: str) -> Tr
     with np.errstate(all="ignore"):
         gram = rotations @ np.swapaxes(rotations, 1, 2)
         rigid = np.isfinite(poses).all(axis=(1, 2)) & (np.abs(gram - np.eye(3)).max(axis=(1, 2)) < 1e-2)
+        rigid &= (np.abs(poses) <= FARTHEST).all(axis=(1, 2))
     rigid &= np.isfinite(timestamps)
     notes = []
     if not rigid.all():

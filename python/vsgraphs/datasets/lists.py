@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -15,6 +14,7 @@ T = TypeVar("T")
 # A list whose order loses more than this share of its frames is sorted instead: it was never in order of
 # time.
 _UNSORTED_SHARE = 0.1
+LATEST_S = 1e11  # the core takes no later one; nanoseconds since 1970 are beyond it
 
 
 @dataclass
@@ -30,17 +30,18 @@ class Timed(Generic[T]):
 def in_order(stamps: list[float], items: list[T], source: str) -> Timed[T]:
     """Makes timestamps strictly increasing.
 
-    Frames without a finite timestamp are skipped. A frame whose timestamp repeats or goes back is skipped;
-    but when that would cost more than a tenth of the list, the list was not in order of time: it is sorted,
-    and only repeated timestamps are skipped.
+    Frames without a timestamp in seconds, at most `LATEST_S`, are skipped. A frame whose timestamp repeats or
+    goes back is skipped; but when that would cost more than a tenth of the list, the list was not in order of
+    time: it is sorted, and only repeated timestamps are skipped.
     """
     out: Timed[T] = Timed([], [])
-    finite = [(stamp, item) for stamp, item in zip(stamps, items, strict=True) if math.isfinite(stamp)]
+    pairs = zip(stamps, items, strict=True)
+    finite = [(stamp, item) for stamp, item in pairs if abs(stamp) <= LATEST_S]  # false for NaN
     _count(
         out,
         "not_finite_timestamp",
         len(stamps) - len(finite),
-        f"{source}: {{}} timestamps that are no number",
+        f"{source}: {{}} timestamps that are no number of seconds",
     )
     kept = _increasing(finite)
     if len(finite) - len(kept) > max(1.0, _UNSORTED_SHARE * len(finite)):
@@ -102,5 +103,5 @@ def read_timed_files(path: Path) -> Timed[str]:
         raise InputError(f"{path} lists no images; expected lines 'timestamp file'")
     timed = in_order([stamp_of(row[0], path) for row in rows], [row[1] for row in rows], path.name)
     if not timed.stamps:
-        raise InputError(f"{path}: none of the {len(rows)} timestamps is a number")
+        raise InputError(f"{path}: none of the {len(rows)} timestamps is a number of seconds")
     return timed

@@ -87,7 +87,7 @@ def read_associations(path: Path) -> Timed[tuple[str, str]]:
         raise InputError(f"{path} lists no frames; expected lines 'timestamp rgb timestamp depth'")
     timed = in_order(stamps, pairs, path.name)
     if not timed.stamps:
-        raise InputError(f"{path}: none of the {len(stamps)} timestamps is a number")
+        raise InputError(f"{path}: none of the {len(stamps)} timestamps is a number of seconds")
     return timed
 
 

@@ -83,5 +83,6 @@ def rotation_angles(rotations: Array) -> Array:
 def _pairs(progress: Array, delta: float) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     # A part in 10^9: a clock that ticks exactly `delta` must not miss its own tick by rounding.
     second = np.searchsorted(progress, progress + delta * (1 - 1e-9), side="left")
-    first = np.flatnonzero(second < len(progress))
+    # Where numbers are so large that `delta` is lost in them, a pose would be its own successor.
+    first = np.flatnonzero((second < len(progress)) & (second > np.arange(len(progress))))
     return first, second[first]

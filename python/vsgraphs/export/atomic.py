@@ -53,7 +53,9 @@ def remove_unfinished() -> None:
 
 def _target(path: Path) -> Path:
     """The file to replace. Raises InputError for what is no file: replaced, a device would be gone."""
-    target = path.resolve() if path.is_symlink() else path
+    target = Path(os.path.realpath(path)) if path.is_symlink() else path
+    if target.is_symlink():
+        raise InputError(f"cannot write {path}: its symbolic links lead in a circle")
     if target.exists() and not target.is_file():
         kind = "a folder" if target.is_dir() else "a pipe or a device, not a regular file"
         raise InputError(f"cannot write {path}: it is {kind}; give the name of a file")

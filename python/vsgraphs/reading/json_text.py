@@ -70,7 +70,7 @@ def _real(word: str) -> float:
 
 
 def _whole(word: str) -> int:
-    if len(word) > 20 or not -_LARGEST <= (value := int(word)) < 2 * _LARGEST:
+    if len(word) > 20 or not -_LARGEST <= (value := int(word)) < _LARGEST:
         raise _RefusedError(f"{shortened(word, 30)} is larger than any whole number here can be", word)
     return value
 

@@ -11,6 +11,8 @@ from vsgraphs.reading import shown
 if TYPE_CHECKING:
     from vsgraphs.scene_graph.graph import SceneGraph
 
+_MOST_CELLS = 20_000_000
+_LARGEST_CELL_M = 10.0
 _Reference = tuple[str, str, int | None]
 
 
@@ -19,6 +21,18 @@ def check_references(graph: SceneGraph, source: str) -> None:
     for who, section, number in _references(graph):
         if number is not None and number not in getattr(graph, section):
             raise InputError(f"{source}: {who} names {section[:-1]} {number}, which is not there")
+
+
+def check_extents(graph: SceneGraph, source: str) -> None:
+    """As above, for surfaces that no building has: of too many cells, or on axes that are none."""
+    for plane in graph.planes.values():
+        extent = plane.extent
+        first, last = extent.runs[:, 1].astype(float), extent.runs[:, 2].astype(float)
+        lengths = [float((axis**2).sum()) for axis in (extent.axis_u, extent.axis_v)]
+        if (last < first).any() or (last - first + 1).sum() > _MOST_CELLS or extent.cell_m > _LARGEST_CELL_M:
+            raise InputError(f"{source}: plane {plane.id} has an extent without cells or of too many")
+        if not all(0.9 < length < 1.1 for length in lengths):
+            raise InputError(f"{source}: plane {plane.id} has an extent on axes that are not of length 1")
 
 
 def check_edges(graph: SceneGraph, source: str) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from vsgraphs.errors import InputError
 from vsgraphs.reading import LARGE, read_json, shown
-from vsgraphs.scene_graph.consistency import check_edges, check_references
+from vsgraphs.scene_graph.consistency import check_edges, check_extents, check_references
 from vsgraphs.scene_graph.edges import Edge, ordered
 from vsgraphs.scene_graph.extent import PlaneExtent
 from vsgraphs.scene_graph.graph import SECTIONS, SceneGraph
@@ -83,6 +83,7 @@ def parse_scene_graph(document: Any, source: str) -> SceneGraph:
     graph.edges = ordered(_decode(Edge, row) for row in document["edges"])
     check_references(graph, source)
     check_edges(graph, source)
+    check_extents(graph, source)
     return graph
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from vsgraphs.reading import shown
 
+_LARGEST = 1e12  # of metres, seconds, ids: its square is still a number
 _TYPES: dict[str, type | tuple[type, ...]] = {
     "object": dict,
     "array": list,
@@ -89,6 +90,6 @@ def _check_value(value: Any, rule: dict[str, Any]) -> str | None:  # noqa: PLR09
 def _is(value: Any, name: str) -> bool:
     if isinstance(value, bool):
         return name == "boolean"
-    if isinstance(value, float) and not math.isfinite(value):
-        return False  # Python reads NaN; JSON has none
+    if isinstance(value, int | float) and not abs(value) <= _LARGEST:
+        return False  # nor is NaN a number, which Python reads and JSON has not
     return isinstance(value, _TYPES[name])

@@ -46,8 +46,11 @@ class OnnxSegmenter:
         self._runtime = runtime or Runtime()
         self._sidecar = read_sidecar(sidecar)
         self._session = _open(model, self._runtime)
-        self._input, self._dtype, self._size = _input_of(self._session, self._sidecar, model)
-        self._outputs = _outputs_of(self._session, self._sidecar)
+        try:
+            self._input, self._dtype, self._size = _input_of(self._session, self._sidecar, model)
+            self._outputs = _outputs_of(self._session, self._sidecar)
+        except UnicodeDecodeError:
+            raise InputError(f"model {model} is damaged: a name in it is no text") from None
         width, height = self._size or (64, 64)
         checked(self(np.zeros((height, width, 3), np.uint8)), self.name)
 
@@ -177,7 +180,8 @@ def _outputs_of(session: Any, sidecar: Sidecar) -> dict[str, str]:
     for part, name in sidecar.output.tensors.items():
         if name not in names:
             raise InputError(
-                f"{sidecar.path}: output {shown(name)} ({part}) is not of the model; it has {_listed(names)}"
+                f"{sidecar.path}: output {shown(name)} ({part}) is not of the model, "
+                f"which has {_listed(names)}"
             )
     return dict(sidecar.output.tensors)
 

@@ -13,15 +13,17 @@ MARK = "scene_gt.json"  # written last: a folder that has it is one of ours, and
 
 
 def part_of(final: Path) -> Path:
-    """Where this process makes the folder."""
-    return final.with_name(f".{final.name}.{os.getpid()}.part")
+    """Where this process makes the folder: beside its place, that of a link beside the folder it names."""
+    place = Path(os.path.realpath(final))
+    return place.parent / f".{place.name}.{os.getpid()}.part"
 
 
 class FolderInTheMaking:
     """A folder under construction beside its final place; renamed when whole, removed otherwise."""
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
-        self._final, self._overwrite = final, overwrite
+        self._named, self._overwrite = final, overwrite
+        self._final = Path(os.path.realpath(final))  # a symbolic link to a folder stays
         self.path = part_of(final)
         self._require_room()
 
@@ -34,7 +36,7 @@ class FolderInTheMaking:
         return self
 
     def _require_room(self) -> None:
-        final, overwrite = self._final, self._overwrite
+        final, overwrite = self._named, self._overwrite
         if final.exists() and not final.is_dir():
             raise InputError(f"output {final} is a file; give a directory")
         if final.is_dir() and any(final.iterdir()) and not (overwrite and (final / MARK).is_file()):

@@ -11,10 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vsgraphs.errors import InputError
 from vsgraphs.scene_graph import inside_polygon
 from vsgraphs.trajectory import Array
 
 CELL_M = 0.02
+_LARGEST_M2 = 40_000.0  # 100 million cells
 
 
 @dataclass(eq=False)
@@ -31,7 +33,13 @@ class Raster:
 
 
 def rasterise(polygon: Array) -> Raster:
-    """(N, 2) corners of a simple polygon, either way round, metres. Cost: cells of its box times N."""
+    """(N, 2) corners of a simple polygon, either way round, metres. Cost: cells of its box times N.
+
+    Raises InputError for an outline larger than any building.
+    """
+    size = polygon.max(axis=0) - polygon.min(axis=0)
+    if not size[0] * size[1] <= _LARGEST_M2:
+        raise InputError(f"a room's outline of {size[0]:g} x {size[1]:g} m is larger than any building")
     least = np.floor(polygon.min(axis=0) / CELL_M).astype(np.int64)
     most = np.ceil(polygon.max(axis=0) / CELL_M).astype(np.int64)
     i, j = np.meshgrid(np.arange(least[0], most[0]), np.arange(least[1], most[1]), indexing="ij")

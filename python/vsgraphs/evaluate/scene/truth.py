@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from vsgraphs.errors import InputError
-from vsgraphs.reading import LARGE, read_json, shortened
+from vsgraphs.reading import LARGE, read_json, shortened, shown
 from vsgraphs.trajectory import Array
 
 _COPLANAR_M = 0.05
+_LARGEST_M = 1e5  # of a building
 
 
 @dataclass(eq=False)
@@ -122,24 +123,27 @@ def parse_scene_truth(document: Any, source: str) -> SceneTruth:
 def _room(row: Mapping[str, Any]) -> TrueRoom:
     return TrueRoom(
         id=str(row["id"]),
-        polygon=np.array(row["polygon"], dtype=np.float64)[:, :2],
-        z_floor=float(row["z_floor"]),
-        height_m=float(row["height"]),
+        polygon=_outline(row["polygon"]),
+        z_floor=_number(row["z_floor"]),
+        height_m=_number(row["height"]),
         level=int(row.get("level", 0)),
         required=bool(row["counted"]) and bool(row["visited"]),
     )
 
 
 def _wall(row: Mapping[str, Any]) -> TrueWall:
-    return TrueWall(
+    wall = TrueWall(
         id=str(row["id"]),
         room=str(row["room"]),
-        start=np.array(row["p0"], dtype=np.float64).reshape(3),
-        end=np.array(row["p1"], dtype=np.float64).reshape(3),
-        height_m=float(row["height"]),
-        normal=np.array(row["n"], dtype=np.float64).reshape(3),
+        start=_point(row["p0"]),
+        end=_point(row["p1"]),
+        height_m=_number(row["height"]),
+        normal=_point(row["n"]),
         required=bool(row["counted"]) and bool(row["observed"]),
     )
+    if not wall.length_m or not wall.normal.any():
+        raise ValueError(f"wall {shown(row['id'])} has no length or no normal")
+    return wall
 
 
 def _door(row: Mapping[str, Any], required: Mapping[str, bool]) -> TrueDoor:
@@ -147,9 +151,30 @@ def _door(row: Mapping[str, Any], required: Mapping[str, bool]) -> TrueDoor:
     return TrueDoor(
         id=str(row["id"]),
         rooms=rooms,
-        center=np.array(row["center"], dtype=np.float64).reshape(3),
+        center=_point(row["center"]),
         required=all(required.get(room, False) for room in rooms),
     )
+
+
+def _point(value: Any) -> Array:
+    return _measured(np.array(value, dtype=np.float64).reshape(3))
+
+
+def _outline(value: Any) -> Array:
+    corners = np.array(value, dtype=np.float64)
+    if corners.ndim != 2 or len(corners) < 3 or corners.shape[1] < 2:
+        raise ValueError(f"a polygon of shape {corners.shape}, expected at least 3 corners")
+    return _measured(corners[:, :2])
+
+
+def _number(value: Any) -> float:
+    return float(_measured(np.array(value, dtype=np.float64)))
+
+
+def _measured(lengths: Array) -> Array:
+    if not (np.abs(lengths) <= _LARGEST_M).all():  # false for NaN, too
+        raise ValueError(f"a length beyond {_LARGEST_M:g} m")
+    return lengths
 
 
 def _grounds(rooms: list[TrueRoom]) -> list[TrueGround]:
