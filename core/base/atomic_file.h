@@ -33,9 +33,11 @@ struct FileContent {
   std::span<const std::byte> bytes() const { return {data.get(), size}; }
 };
 
+// Beyond this no file is read: 64 GB.
+inline constexpr std::size_t largest_readable = std::size_t{1} << 36;
 // All of a regular file of at most `limit` bytes, or the first `most` of it; anything else is refused without waiting for it.
 // Throws InputError naming it and what is wrong.
-FileContent read_file(const std::filesystem::path& path, std::size_t limit = SIZE_MAX,
+FileContent read_file(const std::filesystem::path& path, std::size_t limit = largest_readable,
                       std::size_t most = SIZE_MAX);
 
 }  // namespace vsgraphs
