@@ -110,7 +110,7 @@ def test_directories_that_hold_no_run(
     assert "other holds no run: none of floorplan.svg" in one_line_error(vsgraphs("info", tmp_path / "other"))
     assert "slide is a TUM RGB-D sequence" in one_line_error(vsgraphs("info", recorded))
     (folder / "run.json").write_text('{"frames": 3')
-    assert "run.json: not a whole JSON file" in one_line_error(vsgraphs("info", folder))
+    assert "run.json:1: not valid JSON" in one_line_error(vsgraphs("info", folder))
     for content in ([], {"frames": 3}, {**RUN, "warnings": None}):
         (folder / "run.json").write_text(json.dumps(content))
         with pytest.raises(InputError, match=r"run\.json: not the run\.json of a vsgraphs run"):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import json
 import os
 import sys
 from collections.abc import Collection, Iterator
@@ -12,6 +11,7 @@ from pathlib import Path
 
 from vsgraphs.cli.summary import RESULT_FILES
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_json
 
 _SUFFIX = "_vsgraphs"
 _LONGEST = 200  # bytes of a name; file systems take 255
@@ -60,13 +60,13 @@ def _safe(name: str) -> str:
 
 def holds_a_trajectory(out: Path) -> bool:
     """Whether an earlier run that tracked something left its results; True where it cannot be known."""
-    try:
-        tracked: int = json.loads((out / "run.json").read_bytes())["tracked"]
-    except FileNotFoundError:
+    if not (out / "run.json").exists():
         return False
-    except (OSError, ValueError, LookupError, TypeError):
+    try:
+        report = read_json(out / "run.json", "report", LARGE)
+    except InputError:
         return True
-    return tracked != 0
+    return not isinstance(report, dict) or report.get("tracked") != 0
 
 
 def remove_earlier(out: Path, written: Collection[str]) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from vsgraphs.cli.summary import RESULT_FILES, count, what_was_found
 from vsgraphs.errors import InputError
+from vsgraphs.reading import LARGE, read_json, shortened
 from vsgraphs.scene_graph import DoorNode, RoomNode, SceneGraph, load_scene_graph
 
 _WARNINGS = 5  # so many are printed, the rest counted
@@ -68,12 +69,7 @@ def _no_run(folder: Path, files: dict[str, int]) -> str:
 
 def _report(folder: Path) -> dict[str, Any]:
     path = folder / "run.json"
-    try:
-        report = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError):
-        raise InputError(f"{path}: not a whole JSON file; was it copied completely?") from None
+    report = read_json(path, "report", LARGE, cure="was it copied completely?")
     if not isinstance(report, dict) or any(not isinstance(report.get(k), t) for k, t in _EXPECTED.items()):
         raise InputError(f"{path}: not the run.json of a vsgraphs run")
     return report
@@ -135,7 +131,7 @@ def _text(folder: Path, info: dict[str, Any]) -> str:
     if info["warnings"]:
         more = len(info["warnings"]) - _WARNINGS
         lines += ["", count(len(info["warnings"]), "warning") + ":"]
-        lines += [f"  {line}" for line in info["warnings"][:_WARNINGS]]
+        lines += [f"  {shortened(str(line), 300)}" for line in info["warnings"][:_WARNINGS]]
         lines += [f"  and {more} more in run.json"] if more > 0 else []
     return "\n".join([*lines, "", *_files(info["files"])])
 
