@@ -58,6 +58,7 @@ def test_using_it_in_a_child_is_an_error_in_one_line(slam: vsgraphs.Slam, scene:
         slam.trajectory,
         slam.statistics,
         slam.atlas_state,
+        slam.stop,
         slam.finish,
         slam.close,
         lambda: slam.backlog,

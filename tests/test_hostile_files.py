@@ -15,7 +15,9 @@ from fake_core import Config
 from layouts import write_openloris, write_redwood
 
 from vsgraphs.cli.compare import read_groundtruth
+from vsgraphs.cli.output import holds_a_trajectory
 from vsgraphs.cli.settings import apply_assignments, apply_file
+from vsgraphs.cli.show_run import describe_run
 from vsgraphs.datasets import read_camera_file
 from vsgraphs.datasets.lists import read_list
 from vsgraphs.datasets.opencv_yaml import read_opencv_yaml
@@ -342,3 +344,14 @@ def test_the_command_line_says_so_at_once(recorded: Path, tmp_path: Path, vsgrap
     ):
         done = vsgraphs("run", recorded, "--out", tmp_path / "out", option, value, timeout=60)
         assert word in one_line_error(done)
+
+
+@pytest.mark.parametrize("content", [None, b"[" * 100_000, b'{"frames": NaN}', b"\0" * 100])
+def test_the_report_of_a_run_that_is_none(content: bytes | None, tmp_path: Path) -> None:
+    (tmp_path / "trajectory.txt").write_text("1 0 0 0 0 0 0 1\n")
+    if content is None:
+        (tmp_path / "run.json").symlink_to("/dev/zero")
+    else:
+        (tmp_path / "run.json").write_bytes(content)
+        assert "run.json" in refusal(describe_run, tmp_path)
+    assert holds_a_trajectory(tmp_path)

@@ -176,7 +176,10 @@ std::vector<const SpanRecorder*> Slam::spans() const {
   return ended_ ? executor_->spans() : std::vector<const SpanRecorder*>{};
 }
 
-void Slam::stop() { executor_->stop(); }
+void Slam::stop() {
+  require_own_process();
+  executor_->stop();
+}
 
 void Slam::finish() {
   require_own_process();

@@ -278,6 +278,7 @@ int use_and_destroy(std::unique_ptr<ShortRun> run) {
   refused([&] { slam.backlog(); });
   refused([&] { slam.spans(); });
   refused([&] { slam.add_markers(0, {}); });
+  refused([&] { slam.stop(); });
   refused([&] { slam.finish(); });
   run.reset();
   return accepted;

@@ -10,6 +10,7 @@ from typing import Any
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
 from vsgraphs.plans import building, load_plan, plan_path, plan_text
+from vsgraphs.reading import read_text
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,6 @@ def write_plan(choice: PlanChoice, file: Path, *, overwrite: bool, with_out: boo
     if file.exists() and not overwrite:
         raise InputError(f"{file} exists: choose another name, or allow overwriting it with --overwrite")
     load_plan(plan)
-    text = plan_path(plan).read_text(encoding="utf-8") if isinstance(plan, str) else plan_text(plan)
+    text = read_text(plan_path(plan), "plan") if isinstance(plan, str) else plan_text(plan)
     write_atomically(file, text)
     print(f"plan in {file}")

@@ -133,7 +133,7 @@ def _text(folder: Path, info: dict[str, Any]) -> str:
     if info["warnings"]:
         more = len(info["warnings"]) - _WARNINGS
         lines += ["", count(len(info["warnings"]), "warning") + ":"]
-        lines += [f"  {line}" for line in info["warnings"][:_WARNINGS]]
+        lines += [f"  {shortened(str(line), 300)}" for line in info["warnings"][:_WARNINGS]]
         lines += [f"  and {more} more in run.json"] if more > 0 else []
     return "\n".join([*lines, "", *_files(info["files"])])
 

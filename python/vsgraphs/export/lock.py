@@ -15,6 +15,7 @@ from pathlib import Path
 from types import TracebackType
 
 from vsgraphs.errors import InputError
+from vsgraphs.reading import read_head
 
 
 class Locks:
@@ -114,8 +115,8 @@ def _is_open_as(descriptor: int, path: Path) -> bool:
 
 def _told_holder(lock: Path) -> str:
     try:
-        number, host = lock.read_text(encoding="utf-8").split()
-    except (OSError, ValueError):
+        number, host = read_head(lock, "lock").split()
+    except ValueError:  # InputError, too
         return ""
     return f" (process {number})" if host == socket.gethostname() else f" (process {number} on {host})"
 

@@ -33,7 +33,7 @@ def inside_polygon(points: Array, polygon: Array) -> np.ndarray[tuple[int], np.d
     inside = np.zeros(len(points), dtype=bool)
     for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         crosses = (ay > points[:, 1]) != (by > points[:, 1])
-        if ay != by:
+        if ay != by and crosses.any():  # else the edge may be too flat to divide by
             inside ^= crosses & (points[:, 0] < ax + (points[:, 1] - ay) / (by - ay) * (bx - ax))
     return inside
 

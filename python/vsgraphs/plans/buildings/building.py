@@ -9,6 +9,7 @@ from vsgraphs.errors import InputError
 from vsgraphs.plans.buildings.draw import Draw
 from vsgraphs.plans.buildings.furnishing import Density, Furnishing, make_furnishing
 from vsgraphs.plans.buildings.site import Item, Site
+from vsgraphs.reading import shown
 
 BUILDING_KINDS = ("line", "ring", "star", "storeys")
 MAX_ROOMS, MAX_STOREYS = 200, 20
@@ -90,7 +91,7 @@ def building(
     Raises InputError naming the argument.
     """
     if kind not in BUILDING_KINDS:
-        raise InputError(f"building must be one of {', '.join(BUILDING_KINDS)}, not {kind!r}")
+        raise InputError(f"building must be one of {', '.join(BUILDING_KINDS)}, not {shown(kind)}")
     _whole("rooms", rooms, 1, MAX_ROOMS)
     floors = 1
     if kind == "storeys":
@@ -134,9 +135,9 @@ def _check_alike(rooms: int, furnishings: int, places: int) -> None:
 
 def _whole(name: str, value: object, low: int, high: int) -> None:
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise InputError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
+        raise InputError(f"{name} must be a whole number from {low} to {high}, not {shown(value)}")
 
 
 def _number(name: str, value: object, low: float, high: float) -> None:
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise InputError(f"{name} must be a number from {low} to {high}, not {value!r}")
+        raise InputError(f"{name} must be a number from {low} to {high}, not {shown(value)}")
