@@ -156,6 +156,9 @@ TEST_F(MapChecks, NumbersAreSomewhere) {
             }),
             keyframe);
   EXPECT_EQ(after_structure([](auto& s) { s.rooms[0].polygon.clear(); }), "a room of no shape");
+  EXPECT_EQ(after_structure([](auto& s) { s.rooms[0].polygon[1].x() = 40000; }), "") << "a corridor";
+  EXPECT_EQ(after_structure([](auto& s) { s.rooms[0].polygon = {{0, 0}, {2000, 0}, {2000, 2000}}; }),
+            "a room of no shape");
   EXPECT_EQ(after<std::optional<Eigen::Vector3d>>([](auto& up) { up = Eigen::Vector3d(0, 0, 2); }),
             "an upward direction that is none");
 }

@@ -11,8 +11,8 @@ namespace vsgraphs {
 namespace {
 
 constexpr std::int64_t most_frames = std::int64_t{1} << 53;
-constexpr int most_levels = 16;  // of an image pyramid
-constexpr double most_room_m = 1e3;
+constexpr int most_levels = 16;       // of an image pyramid
+constexpr double most_room_m2 = 1e6;  // with all around it; a storey is less (core/scene/level_map.cpp)
 // A point that two views saw nearly alike may be anywhere along its rays.
 constexpr double most_landmark_m = 1e8;
 
@@ -66,7 +66,7 @@ bool is_sane(const Polygon2& polygon) {
     low = low.cwiseMin(corner);
     high = high.cwiseMax(corner);
   }
-  return (high - low).maxCoeff() <= most_room_m;
+  return (high - low).prod() <= most_room_m2;
 }
 
 bool is_height(const std::optional<double>& height_m) { return !height_m || within(*height_m, most_metres); }
