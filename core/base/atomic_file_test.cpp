@@ -22,7 +22,10 @@ std::span<const std::byte> bytes_of(const std::string& text) { return std::as_by
 
 class AtomicFile : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void SetUp() override {
+    std::filesystem::remove_all(folder_);  // of a run that was killed
+    std::filesystem::create_directories(folder_);
+  }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string content() const { return content_of(file_); }
   static std::string content_of(const std::filesystem::path& path) {
