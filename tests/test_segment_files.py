@@ -108,7 +108,7 @@ def test_without_the_extra_its_name_is_said(model: Path, monkeypatch: pytest.Mon
         ({"output": {"kind": "semantic"}}, "key 'scores' is missing"),
         (
             {"output": {**SCORES, "scores": "logits"}},
-            "output 'logits' (scores) is not of the model; it has",
+            "output 'logits' (scores) is not of the model, which has",
         ),
         ({"roles": None}, "key 'roles' is missing"),
         ({"roles": {}}, "no class has a role"),
