@@ -126,7 +126,7 @@ std::span<const std::byte> ArchiveReader::section(const std::string& name) const
 
 FieldReader ArchiveReader::reader(const std::string& name) const {
   return {section(name), &shared_,
-          [this, name](const std::string& what) { damaged("section '" + name + "': " + what); }};
+          [this, name](const std::string& what) { damaged("section '" + name + "': " + what); }, version_};
 }
 
 void ArchiveReader::damaged(const std::string& what) const {

@@ -25,6 +25,18 @@ void visit_fields(T& v, auto& field) {
 template <>
 inline constexpr const char* shared_name<Leaf> = "leaves";
 
+// As a later version of the program has it.
+struct LaterLeaf {
+  Leaf leaf;
+  int veins = 3;
+};
+template <FieldsOf<LaterLeaf> T>
+void visit_fields(T& v, auto& field) {
+  auto& [leaf, veins] = v;
+  field(leaf);
+  field.since(2, veins);
+}
+
 struct Tree {
   bool tall = false;
   double height = 0;
@@ -190,6 +202,23 @@ TEST(Archive, SaysWhichSectionIsMissing) {
   archive.add("number", 42);
   const Bytes bytes = test::joined(archive.finish());
   EXPECT_THAT(error_of(bytes), testing::HasSubstr("section 'tree' is missing"));
+}
+
+TEST(Archive, AFieldThatCameLaterStaysAsItIsWhereAnOlderFileIsRead) {
+  constexpr ArchiveKind old_kind{"TESTFILE", 1, "test"}, new_kind{"TESTFILE", 2, "test"};
+  ArchiveWriter old_writer(old_kind), new_writer(new_kind);
+  old_writer.add("oak", Leaf{{4}}, Leaf{{5}});
+  new_writer.add("oak", LaterLeaf{{{4}}, 7}, LaterLeaf{{{5}}, 8});
+  const Bytes old_file = test::joined(old_writer.finish()), new_file = test::joined(new_writer.finish());
+  LaterLeaf first, second;
+  ArchiveReader("FILE", old_file, new_kind).read("oak", first, second);
+  EXPECT_EQ(second.leaf.numbers, (std::vector<std::uint16_t>{5}));
+  EXPECT_EQ(first.veins, 3);
+  EXPECT_EQ(second.veins, 3);
+  ArchiveReader("FILE", new_file, new_kind).read("oak", first, second);
+  EXPECT_EQ(first.veins, 7);
+  EXPECT_EQ(second.veins, 8);
+  EXPECT_EQ(least_bytes<LaterLeaf>(), least_bytes<Leaf>());
 }
 
 }  // namespace

@@ -38,13 +38,18 @@ class FieldReader {
  public:
   static constexpr bool reads = true;
   // `fail` is given what is wrong and must throw. `shared` may be null where no shared constants are read.
+  // `version`: of the format they are in.
   FieldReader(std::span<const std::byte> bytes, const SharedConstants* shared,
-              std::function<void(const std::string&)> fail)
-      : bytes_(bytes), shared_(shared), fail_(std::move(fail)) {}
+              std::function<void(const std::string&)> fail, std::uint32_t version = UINT32_MAX)
+      : bytes_(bytes), shared_(shared), fail_(std::move(fail)), version_(version) {}
 
   template <typename... T>
   void operator()(T&... values) {
     (read(values), ...);
+  }
+  template <typename... T>
+  void since(std::uint32_t version, T&... values) {
+    if (version_ >= version) (read(values), ...);
   }
   void require(bool ok, const char* what) const {
     if (!ok) failed(what);
@@ -131,6 +136,7 @@ class FieldReader {
   std::span<const std::byte> bytes_;
   const SharedConstants* shared_;
   std::function<void(const std::string&)> fail_;
+  std::uint32_t version_;
 };
 
 }  // namespace vsgraphs

@@ -49,6 +49,10 @@ class FieldWriter {
   void operator()(const T&... values) {
     (write(values), ...);
   }
+  template <typename... T>
+  void since(std::uint32_t, const T&... values) {
+    if constexpr (!requires { Sink::counts_oldest; }) (write(values), ...);
+  }
 
  private:
   template <typename T>
@@ -89,9 +93,10 @@ class FieldWriter {
   Sink& sink_;
 };
 
-// Counts bytes and keeps none.
+// Counts bytes, as the oldest format has them, and keeps none.
 class CountingSink {
  public:
+  static constexpr bool counts_oldest = true;
   void bytes(const void*, std::size_t count) { count_ += count; }
   template <typename T>
   void shared(const std::shared_ptr<const T>&) {

@@ -8,6 +8,9 @@
 //     field(keyframe, feature);
 //   }
 //
+// A field that came later than the first format of its file is declared apart, with the version it came in, and stays as it
+// is where an older file is read: `field.since(3, stretch);`
+//
 // Fields may be numbers, enums, Eigen matrices of fixed size, strings, standard containers, optionals, shared constants
 // (std::shared_ptr<const T>) and values that declare their fields in turn.
 #pragma once

@@ -37,12 +37,14 @@ struct Keyframe {
       patches;  // planar pieces of `surface`; none before they were sought
   std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
+  KeyframeId stretch;  // the first keyframe of its stretch (stretch.h); an invalid one begins one
 };
 template <FieldsOf<Keyframe> T>
 void visit_fields(T& v, auto& field) {
-  auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks] =
-      v;
+  auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks,
+         stretch] = v;
   field(frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks);
+  field.since(3, stretch);
 }
 
 // What is left of a keyframe that was culled: where it stood, seen from a keyframe that stayed.
@@ -52,11 +54,13 @@ struct RetiredKeyframe {
   std::shared_ptr<const KeyframeSurfaces>
       patches;            // planes go on being where it saw them; null where no plane needs them
   bool replaced = false;  // by others that show all it saw
+  KeyframeId stretch;     // as it was, too
 };
 template <FieldsOf<RetiredKeyframe> T>
 void visit_fields(T& v, auto& field) {
-  auto& [anchor, anchor_from_camera, patches, replaced] = v;
+  auto& [anchor, anchor_from_camera, patches, replaced, stretch] = v;
   field(anchor, anchor_from_camera, patches, replaced);
+  field.since(3, stretch);
 }
 
 // A camera pose tied to a keyframe, so that corrections of the keyframe move it for free.

@@ -105,6 +105,7 @@ Snapshot Map::snapshot() {
 
 void Map::apply_one(const AddKeyframe& op) {
   Keyframe keyframe = op.keyframe;
+  if (!keyframe.stretch.valid()) keyframe.stretch = op.id;
   keyframe.landmarks.assign(static_cast<std::size_t>(keyframe.features->size()), LandmarkId{});
   keyframes_.insert_at(op.id, std::move(keyframe));
   // Ids of retired keyframes are keyframe ids: the two tables grow together.
@@ -116,7 +117,7 @@ void Map::apply_one(const RemoveKeyframe& op) {
   const Keyframe* anchor = keyframes_.find(op.anchor);
   if (!keyframe || !anchor || op.id == op.anchor) return;
   *retired_.edit(op.id) = {op.anchor, anchor->world_from_camera.inverse() * keyframe->world_from_camera,
-                           keyframe->patches, op.replaced};
+                           keyframe->patches, op.replaced, keyframe->stretch};
   const std::vector<LandmarkId> observed = keyframe->landmarks;
   for (const LandmarkId landmark : observed) {
     if (landmark.valid()) apply_one(RemoveObservation{landmark, op.id});

@@ -53,6 +53,9 @@ class Map {
   // The keyframe that was made of a frame; an invalid id if there is none. Newest first: cheap for recent frames.
   KeyframeId keyframe_of_frame(std::int64_t frame_index) const;
 
+  // The stretch a keyframe belongs to, living or retired (stretch.h), named by its first keyframe; invalid if it never existed.
+  KeyframeId stretch_of(KeyframeId id) const;
+
   // The room a point of the world is in; no_room outside all that were found.
   RoomNumber room_at(const Eigen::Vector3d& point_in_world) const;
 
@@ -89,6 +92,9 @@ class Map {
       map.structure_ = std::make_shared<const FoundStructure>(std::move(structure));
     visit("version", map.version_);
   }
+
+  // For maps of a file that knows no stretches: cuts them by their way.
+  void cut_into_stretches(double max_way_m);
 
   // A copy that nobody writes; the map goes on in fresh chunks. Only the owner may call this.
   Snapshot snapshot();

@@ -1,6 +1,7 @@
 #include "core/map/map_archive.h"
 
 #include "core/map/map_checks.h"
+#include "core/map/stretch.h"
 
 namespace vsgraphs {
 
@@ -11,6 +12,7 @@ void save_map(ArchiveWriter& archive, const std::string& prefix, const Map& map)
 Map load_map(const ArchiveReader& archive, const std::string& prefix) {
   Map map;
   visit_tables(map, [&](const char* name, auto& part) { archive.read(prefix + "/" + name, part); });
+  if (archive.version() < 3) map.cut_into_stretches(usual_stretch_m);
   for (const auto check : {wrong_with_references, wrong_with_values}) {
     if (Wrong wrong = check(map)) archive.damaged(wrong);
   }

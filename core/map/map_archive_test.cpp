@@ -13,7 +13,7 @@ namespace {
 
 using test::full_map;
 
-constexpr ArchiveKind kind{"TEST_MAP", 1, "map"};
+constexpr ArchiveKind kind{"TEST_MAP", 3, "map"};
 
 Bytes bytes_of(const Map& map) {
   ArchiveWriter archive(kind);

@@ -12,6 +12,13 @@ namespace {
 
 Wrong wrong_with_keyframes(const Map& map) {
   Wrong wrong = nullptr;
+  const auto& retired = map.retired_keyframes();
+  for (std::uint32_t index = 0; index < retired.index_bound(); ++index) {
+    const KeyframeId id = retired.at_index(index);
+    if (id.valid() &&
+        (map.stretch_of(id).index > index || map.stretch_of(map.stretch_of(id)) != map.stretch_of(id)))
+      wrong = "a keyframe of a stretch that does not exist";
+  }
   map.keyframes().for_each([&](KeyframeId, const Keyframe& keyframe) {
     if (!keyframe.features)
       wrong = "a keyframe without features";

@@ -131,9 +131,14 @@ KeyframeId successor(const Map& map, KeyframeId id, KeyframeId made_before) {
     return !link || link->to != id;
   };
   const auto link = map.living_link(id);
+  // One of its own stretch, if there is any: what hangs on it stays with the stretch.
+  KeyframeId nearest;
   for (const auto& [neighbour, shared] : map.covisible(id, link ? firmly_shared : 1)) {
-    if (may(neighbour)) return neighbour;
+    if (!may(neighbour)) continue;
+    if (map.stretch_of(neighbour) == map.stretch_of(id)) return neighbour;
+    if (!nearest.valid()) nearest = neighbour;
   }
+  if (nearest.valid()) return nearest;
   // Tracking measured this step; that the camera came back is only what the map makes of all steps since.
   if (link && may(link->to)) return link->to;
   return made_before.valid() && may(made_before) ? made_before : KeyframeId{};

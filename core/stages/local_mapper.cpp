@@ -26,6 +26,8 @@ MapEdit LocalMapper::insert(const KeyframeRequest& request, const Snapshot& snap
     const auto pose = draft.map().resolve(request.pose);
     VSG_INVARIANT(pose.has_value());
     keyframe.world_from_camera = *pose;
+    keyframe.stretch =
+        stretch_going_on(draft.map(), *pose, request.landmarks, request.tracked_link, options_.stretch_way_m);
   }
   id = draft.add(std::move(keyframe));
   ++keyframe_count_;

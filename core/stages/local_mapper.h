@@ -8,6 +8,7 @@
 #include "core/base/options.h"
 #include "core/base/trace.h"
 #include "core/map/draft.h"
+#include "core/map/stretch.h"
 #include "core/solve/window.h"
 #include "core/stages/culling.h"
 #include "core/stages/messages.h"
@@ -22,6 +23,7 @@ struct LocalMapperOptions {
   int window_witnesses = 25;
   int iterations_before_dropping = 5;
   int iterations = 10;
+  double stretch_way_m = usual_stretch_m;
   CullingOptions culling;
 };
 
@@ -37,6 +39,8 @@ void describe(LocalMapperOptions& o, Visitor& field) {
   field("iterations_before_dropping", o.iterations_before_dropping, 0, 50,
         "iterations of a local adjustment before outliers are dropped");
   field("iterations", o.iterations, 1, 50, "iterations of a local adjustment after that");
+  field("stretch_way_m", o.stretch_way_m, 1.0, 100.0,
+        "metres of way after which another stretch of keyframes begins; a loop moves stretches as a whole");
 }
 
 class LocalMapper {

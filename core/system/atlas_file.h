@@ -15,7 +15,7 @@
 
 namespace vsgraphs {
 
-inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 2, "atlas"};
+inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 3, "atlas"};
 
 struct SavedAtlas {
   AtlasState state;
