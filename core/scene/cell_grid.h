@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/fields.h"
+
 namespace vsgraphs {
 
 struct Cell {
@@ -17,6 +19,9 @@ struct Cell {
 inline Cell cell_at(double s_m, double t_m, double size_m) {
   return {static_cast<int>(std::floor(s_m / size_m)), static_cast<int>(std::floor(t_m / size_m))};
 }
+
+// Of grids that are read: some kilometres to each side, so that nothing overflows.
+inline constexpr int farthest_cell = 1 << 16;
 
 template <typename Value>
 class CellGrid {
@@ -35,6 +40,13 @@ class CellGrid {
     return values_[place(c)];
   }
   std::size_t memory_bytes() const { return values_.size() * sizeof(Value); }
+
+  template <FieldsOf<CellGrid> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.min_.s, v.min_.t, v.columns_, v.rows_, v.values_);
+    if constexpr (std::remove_reference_t<decltype(field)>::reads)
+      field.require(v.fits_together(), "cells that do not fit together");
+  }
 
  private:
   std::size_t place(Cell c) const {
@@ -58,6 +70,13 @@ class CellGrid {
       for (int s = min_.s; s < end_s(); ++s) bigger.values_[bigger.place({s, t})] = values_[place({s, t})];
     }
     *this = std::move(bigger);
+  }
+
+  bool fits_together() const {
+    const auto near = [](int cell) { return cell >= -farthest_cell && cell <= farthest_cell; };
+    return near(min_.s) && near(min_.t) && columns_ >= 0 && rows_ >= 0 && columns_ <= 2 * farthest_cell &&
+           rows_ <= 2 * farthest_cell &&
+           values_.size() == static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   }
 
   Cell min_;

@@ -35,13 +35,13 @@ bool extents_touch(const PlaneExtent& extent, const std::vector<Eigen::Vector3d>
 namespace {
 
 // How well a patch fits a plane, smaller is better; empty if it does not.
-std::optional<double> misfit(const Map& map, const MappedPlane& mapped, const PlacedPatch& patch,
+std::optional<double> misfit(const KnownSurface& known, const MappedPlane& mapped, const PlacedPatch& patch,
                              const PlaneAssociationOptions& options) {
   constexpr double widest_rad = 0.35;
   const double max_angle = std::min(widest_rad, options.max_angle_rad + 2 * patch.tilt_sigma_rad);
   if (!faces_the_same_way(mapped.plane, patch.plane, max_angle)) return std::nullopt;
   if (!offset_agrees(mapped.plane, patch.plane, options.max_offset_m)) return std::nullopt;
-  if (!extents_touch(extent_of(map, mapped), patch.points, options.max_gap_m)) return std::nullopt;
+  if (!extents_touch(known.extent(), patch.points, options.max_gap_m)) return std::nullopt;
   const double angle = std::acos(std::clamp(mapped.plane.normal.dot(patch.plane.normal), -1.0, 1.0));
   return std::abs(mapped.plane.signed_distance(patch.plane.anchor)) / options.max_offset_m +
          angle / max_angle;
@@ -60,7 +60,8 @@ bool coplanar_with(const std::vector<const PlacedPatch*>& taken, const PlacedPat
 
 }  // namespace
 
-std::vector<PlaneId> associate_patches(const Map& map, const std::vector<PlacedPatch>& patches,
+std::vector<PlaneId> associate_patches(const Map& map, const SurfaceKeeper& surfaces,
+                                       const std::vector<PlacedPatch>& patches,
                                        const PlaneAssociationOptions& options) {
   struct Candidate {
     double misfit;
@@ -70,7 +71,9 @@ std::vector<PlaneId> associate_patches(const Map& map, const std::vector<PlacedP
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     map.planes().for_each([&](PlaneId id, const MappedPlane& mapped) {
-      if (const auto m = misfit(map, mapped, patches[i], options)) candidates.push_back({*m, i, id});
+      const KnownSurface* known = surfaces.find(id);
+      if (!known) return;
+      if (const auto m = misfit(*known, mapped, patches[i], options)) candidates.push_back({*m, i, id});
     });
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -89,32 +92,39 @@ std::vector<PlaneId> associate_patches(const Map& map, const std::vector<PlacedP
 
 namespace {
 
-bool one_surface(const Map& map, const MappedPlane& a, const MappedPlane& b,
-                 const PlaneAssociationOptions& options) {
+struct SeenPlane {
+  const AnchoredPlane& plane;
+  const PlaneExtent& extent;
+};
+
+bool one_surface(const SeenPlane& a, const SeenPlane& b, const PlaneAssociationOptions& options) {
   if (!faces_the_same_way(a.plane, b.plane, options.merge_angle_rad)) return false;
   // Cheap first: the anchors lie within the extents.
   constexpr double lever_m = 0.1;
   const double coarse = options.merge_offset_m + lever_m;
   if (!offset_agrees(a.plane, b.plane, coarse) && !offset_agrees(b.plane, a.plane, coarse)) return false;
-  const PlaneExtent extent_a = extent_of(map, a), extent_b = extent_of(map, b);
-  if (std::abs(a.plane.signed_distance(extent_b.centre())) > options.merge_offset_m ||
-      std::abs(b.plane.signed_distance(extent_a.centre())) > options.merge_offset_m)
+  if (std::abs(a.plane.signed_distance(b.plane.project(b.extent.centre()))) > options.merge_offset_m ||
+      std::abs(b.plane.signed_distance(a.plane.project(a.extent.centre()))) > options.merge_offset_m)
     return false;
-  return extents_touch(extent_a, observed_points(map, b), options.merge_gap_m);
+  return extents_touch(a.extent, b.extent.points(), options.merge_gap_m);
 }
 
 }  // namespace
 
-std::vector<PlaneMerge> find_merges(const Map& map, const std::vector<PlaneId>& touched,
+std::vector<PlaneMerge> find_merges(const Map& map, const SurfaceKeeper& surfaces,
+                                    const std::set<PlaneId>& touched,
                                     const PlaneAssociationOptions& options) {
   std::vector<PlaneMerge> merges;
   std::vector<PlaneId> gone;
   const auto is_gone = [&](PlaneId id) { return std::find(gone.begin(), gone.end(), id) != gone.end(); };
   for (const PlaneId id : touched) {
     const MappedPlane* plane = map.planes().find(id);
-    if (!plane) continue;
+    const KnownSurface* known = surfaces.find(id);
+    if (!plane || !known) continue;
     map.planes().for_each([&](PlaneId other_id, const MappedPlane& other) {
-      if (other_id == id || is_gone(id) || is_gone(other_id) || !one_surface(map, *plane, other, options))
+      const KnownSurface* other_known = surfaces.find(other_id);
+      if (other_id == id || !other_known || is_gone(id) || is_gone(other_id) ||
+          !one_surface({plane->plane, known->extent()}, {other.plane, other_known->extent()}, options))
         return;
       const bool keep_other = other.observations.size() != plane->observations.size()
                                   ? other.observations.size() > plane->observations.size()
@@ -126,12 +136,12 @@ std::vector<PlaneMerge> find_merges(const Map& map, const std::vector<PlaneId>& 
   return merges;
 }
 
-std::optional<OtherFace> find_other_face(const Map& map, PlaneId face,
+std::optional<OtherFace> find_other_face(const Map& map, const SurfaceKeeper& surfaces, PlaneId face,
                                          const PlaneAssociationOptions& options) {
   const MappedPlane* mine = map.planes().find(face);
-  if (!mine) return std::nullopt;
+  const KnownSurface* my_surface = surfaces.find(face);
+  if (!mine || !my_surface) return std::nullopt;
   std::optional<OtherFace> best;
-  const PlaneExtent extent = extent_of(map, *mine);
   map.planes().for_each([&](PlaneId id, const MappedPlane& other) {
     const AnchoredPlane turned{-other.plane.normal, other.plane.anchor, -other.plane.offset_m};
     if (id == face || other.role != mine->role ||
@@ -142,7 +152,9 @@ std::optional<OtherFace> find_other_face(const Map& map, PlaneId face,
     if (thickness < options.min_thickness_m || thickness > options.max_thickness_m) return;
     if (best && best->thickness_m <= thickness) return;
     constexpr double beside_m = 0.5;
-    if (extents_touch(extent, observed_points(map, other), beside_m)) best = OtherFace{id, thickness};
+    const KnownSurface* theirs = surfaces.find(id);
+    if (theirs && extents_touch(my_surface->extent(), theirs->extent().points(), beside_m))
+      best = OtherFace{id, thickness};
   });
   return best;
 }

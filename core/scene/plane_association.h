@@ -7,7 +7,7 @@
 
 #include "core/base/options.h"
 #include "core/map/map.h"
-#include "core/scene/plane_extent.h"
+#include "core/scene/surface_keeper.h"
 
 namespace vsgraphs {
 
@@ -54,8 +54,11 @@ bool offset_agrees(const AnchoredPlane& plane, const AnchoredPlane& patch, doubl
 // Some of the patch lies within the gap of the extent.
 bool extents_touch(const PlaneExtent& extent, const std::vector<Eigen::Vector3d>& points, double max_gap_m);
 
+// `surfaces` is what is known of the map's planes.
+
 // For each patch of a keyframe its plane, invalid where it shows a new one.
-std::vector<PlaneId> associate_patches(const Map& map, const std::vector<PlacedPatch>& patches,
+std::vector<PlaneId> associate_patches(const Map& map, const SurfaceKeeper& surfaces,
+                                       const std::vector<PlacedPatch>& patches,
                                        const PlaneAssociationOptions& options);
 
 // Pairs (gone, kept) of planes that turned out to be one; the one observed more often stays. Those among `touched`
@@ -63,7 +66,8 @@ std::vector<PlaneId> associate_patches(const Map& map, const std::vector<PlacedP
 struct PlaneMerge {
   PlaneId gone, kept;
 };
-std::vector<PlaneMerge> find_merges(const Map& map, const std::vector<PlaneId>& touched,
+std::vector<PlaneMerge> find_merges(const Map& map, const SurfaceKeeper& surfaces,
+                                    const std::set<PlaneId>& touched,
                                     const PlaneAssociationOptions& options);
 
 // Opposite faces back to back within the thickness of a wall, over each other in part. Empty if none fits; the nearest
@@ -72,7 +76,7 @@ struct OtherFace {
   PlaneId id;
   double thickness_m = 0;
 };
-std::optional<OtherFace> find_other_face(const Map& map, PlaneId face,
+std::optional<OtherFace> find_other_face(const Map& map, const SurfaceKeeper& surfaces, PlaneId face,
                                          const PlaneAssociationOptions& options);
 
 }  // namespace vsgraphs

@@ -1,6 +1,10 @@
 #include "core/scene/plane_extent.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "core/scene/moved_cells.h"
 
 namespace vsgraphs {
 
@@ -17,6 +21,33 @@ PlaneFrame frame_of(const AnchoredPlane& plane, const std::optional<Eigen::Vecto
     frame.t = basis.col(1);
   }
   return frame;
+}
+
+void PlaneExtent::count(const Eigen::Vector3d& point, int change) {
+  const Eigen::Vector2d c = frame_.coordinates(point);
+  if (!(c.cwiseAbs().maxCoeff() < farthest_m)) return;
+  std::uint16_t& cell = cells_[cell_at(c.x(), c.y(), cell_m)];
+  const int before = cell;
+  cell = static_cast<std::uint16_t>(std::clamp(before + change, 0, int{std::numeric_limits<std::uint16_t>::max()}));
+  count_ += (cell != 0) - (before != 0);
+}
+
+void PlaneExtent::add(const PlaneExtent& other) {
+  for_moved_cells(other.cells_, other.frame_, frame_, cell_m, [this](Cell at, std::uint16_t points) {
+    std::uint16_t& cell = cells_[at];
+    count_ += cell == 0;
+    cell = static_cast<std::uint16_t>(std::min(cell + points, int{std::numeric_limits<std::uint16_t>::max()}));
+  });
+}
+
+std::vector<Eigen::Vector3d> PlaneExtent::points() const {
+  std::vector<Eigen::Vector3d> points;
+  for (int t = cells_.min_t(); t < cells_.end_t(); ++t) {
+    for (int s = cells_.min_s(); s < cells_.end_s(); ++s) {
+      if (cells_.at({s, t})) points.push_back(frame_.point((s + 0.5) * cell_m, (t + 0.5) * cell_m));
+    }
+  }
+  return points;
 }
 
 Eigen::Vector3d PlaneExtent::centre() const {
@@ -49,23 +80,6 @@ double PlaneExtent::share_near(const std::vector<Eigen::Vector3d>& points, doubl
   const auto count =
       std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return near(p, reach_m); });
   return static_cast<double>(count) / static_cast<double>(points.size());
-}
-
-std::vector<Eigen::Vector3d> observed_points(const Map& map, const MappedPlane& plane) {
-  std::vector<Eigen::Vector3d> points;
-  for (const PlaneObservation& observation : plane.observations) {
-    const SurfacePatch* patch = map.patch(observation);
-    const auto pose = map.resolve({observation.keyframe, Se3{}});
-    if (!patch || !pose) continue;
-    for (const Eigen::Vector3f& p : patch->points) points.push_back(*pose * p.cast<double>());
-  }
-  return points;
-}
-
-PlaneExtent extent_of(const Map& map, const MappedPlane& plane) {
-  PlaneExtent extent(frame_of(plane.plane, map.up_in_world()));
-  for (const Eigen::Vector3d& p : observed_points(map, plane)) extent.add(p);
-  return extent;
 }
 
 }  // namespace vsgraphs

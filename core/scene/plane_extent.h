@@ -5,8 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/fields.h"
 #include "core/geometry/plane.h"
-#include "core/map/map.h"
+#include "core/geometry/se3.h"
 #include "core/scene/cell_grid.h"
 
 namespace vsgraphs {
@@ -20,7 +21,16 @@ struct PlaneFrame {
     return {s.dot(point - origin), t.dot(point - origin)};
   }
   Eigen::Vector3d point(double s_m, double t_m) const { return origin + s_m * s + t_m * t; }
+  // The same frame as seen from where `change` takes the points of its world.
+  PlaneFrame transformed(const Se3& change) const {
+    return {change * origin, change.rotation() * s, change.rotation() * t};
+  }
 };
+template <FieldsOf<PlaneFrame> T>
+void visit_fields(T& v, auto& field) {
+  auto& [origin, s, t] = v;
+  field(origin, s, t);
+}
 
 // t is as near to `up` as the plane allows; for planes that lie level, s and t are any two level directions.
 PlaneFrame frame_of(const AnchoredPlane& plane, const std::optional<Eigen::Vector3d>& up);
@@ -29,37 +39,49 @@ class PlaneExtent {
  public:
   static constexpr double cell_m = 0.1;
 
+  PlaneExtent() = default;
   explicit PlaneExtent(const PlaneFrame& frame) : frame_(frame) {}
 
   // Nothing farther along it belongs to one surface: the keyframe that saw it stands wrong.
   static constexpr double farthest_m = 500.0;
 
-  void add(const Eigen::Vector3d& point) {
-    const Eigen::Vector2d c = frame_.coordinates(point);
-    if (!(c.cwiseAbs().maxCoeff() < farthest_m)) return;
-    std::uint8_t& cell = cells_[cell_at(c.x(), c.y(), cell_m)];
-    count_ += cell == 0;
-    cell = 1;
-  }
+  void add(const Eigen::Vector3d& point) { count(point, 1); }
+  // Takes a point out that was added where it is now.
+  void remove(const Eigen::Vector3d& point) { count(point, -1); }
+  // Takes over another one's cells, each from where it lies now.
+  void add(const PlaneExtent& other);
+  // Goes along where the surface is moved; no cell changes.
+  void set_frame(const PlaneFrame& frame) { frame_ = frame; }
   const PlaneFrame& frame() const { return frame_; }
-  const CellGrid<std::uint8_t>& cells() const { return cells_; }
+  // How many points lie in each.
+  const CellGrid<std::uint16_t>& cells() const { return cells_; }
   double area_m2() const { return count_ * cell_m * cell_m; }
   bool empty() const { return count_ == 0; }
   // Middle of the cells' bounding box, on the frame's plane; the origin if there are none.
   Eigen::Vector3d centre() const;
+  // The middles of all cells with a point.
+  std::vector<Eigen::Vector3d> points() const;
   // Whether a cell lies within `reach_m` (along each axis) of the point's foot.
   bool near(const Eigen::Vector3d& point, double reach_m) const;
   // Share of the points that have a cell within `reach_m`.
   double share_near(const std::vector<Eigen::Vector3d>& points, double reach_m) const;
 
+  // Of one that was read.
+  bool fits_together() const {
+    return count_ >= 0 && static_cast<std::size_t>(count_) <= cells_.memory_bytes() / sizeof(std::uint16_t);
+  }
+
+  template <FieldsOf<PlaneExtent> T>
+  friend void visit_fields(T& v, auto& field) {
+    field(v.frame_, v.cells_, v.count_);
+  }
+
  private:
+  void count(const Eigen::Vector3d& point, int change);
+
   PlaneFrame frame_;
-  CellGrid<std::uint8_t> cells_;
+  CellGrid<std::uint16_t> cells_;
   int count_ = 0;
 };
-
-// Points of the patches behind a plane's observations, in the world. Linear in their number.
-std::vector<Eigen::Vector3d> observed_points(const Map& map, const MappedPlane& plane);
-PlaneExtent extent_of(const Map& map, const MappedPlane& plane);
 
 }  // namespace vsgraphs

@@ -3,17 +3,17 @@
 // After vS-Graphs, "Building Component Recognition".
 #pragma once
 
-#include <map>
 #include <set>
+#include <vector>
 
 #include "core/base/trace.h"
 #include "core/geometry/camera.h"
 #include "core/map/draft.h"
 #include "core/map/label_grid.h"
 #include "core/scene/plane_association.h"
-#include "core/scene/plane_evidence.h"
 #include "core/scene/plane_extraction.h"
 #include "core/scene/plane_role.h"
+#include "core/scene/surface_keeper.h"
 
 namespace vsgraphs {
 
@@ -37,42 +37,36 @@ void describe(SceneBuilderOptions& o, Visitor& field) {
         "a landmark farther than this behind a wall or the ground that hides it is removed");
 }
 
+// Two edits per keyframe: what it sees is associated with the planes; then, when that is known (SurfaceKeeper), the planes
+// around are interpreted. Holds nothing itself.
 class SceneBuilder {
  public:
   SceneBuilder(const SceneBuilderOptions& options, const Camera& camera)
       : options_(options), camera_(camera) {}
 
-  // The planes of a keyframe that is in the map, and all that follows from them. With `labels` (may be null) of an
-  // image seen before: looks at it again. A few ms.
-  MapEdit propose(KeyframeId keyframe, const Snapshot& snapshot, const LabelGrid* labels, TraceSink* trace);
-
-  // Gathers what the rays of a map's keyframes say about its planes, where nobody has yet: the map was loaded. Cost: some
-  // tens of us per pair of keyframe and plane, once.
-  void recall(const Map& map);
-  // A map was joined with another: its planes were moved by `change` (world from world), and the next proposal looks for
-  // planes to merge among all.
-  void move(const Map& map, const Se3& change);
-  // `gone` was merged into `kept` by somebody else.
-  void note_merge(PlaneId gone, PlaneId kept);
+  // The planes of a keyframe that is in the map, and which way is up. With `labels` (may be null) of an image seen before:
+  // looks at it again. `surfaces` knows the snapshot's planes. A few ms.
+  MapEdit associate(KeyframeId keyframe, const Snapshot& snapshot, const SurfaceKeeper& surfaces,
+                    const LabelGrid* labels, TraceSink* trace) const;
+  // Planes that turn out to be one, what those are that changed and their neighbours, what the keyframe cannot have seen.
+  // Nothing before it is known which way is up.
+  MapEdit interpret(KeyframeId keyframe, const Snapshot& snapshot, const SurfaceKeeper& surfaces,
+                    TraceSink* trace) const;
 
  private:
-  std::vector<PlaneId> associate(KeyframeId keyframe, const LabelGrid* labels, Draft& draft,
-                                 TraceSink* trace);
-  void merge(const std::vector<PlaneId>& touched, Draft& draft);
-  void find_up_direction(Draft& draft) const;
-  void gather_evidence(KeyframeId keyframe, const Map& map);
-  void classify(const std::vector<PlaneId>& candidates, Draft& draft) const;
-  static RoleVotes segmenter_votes(const Map& map, const MappedPlane& plane);
-  bool another_is_the_wall(const Map& map, PlaneId id) const;
-  SurfaceFacts facts_of(const Map& map, const MappedPlane& plane) const;
-  void pair_faces(const std::vector<PlaneId>& touched, Draft& draft) const;
-  void remove_hidden_landmarks(KeyframeId keyframe, Draft& draft) const;
+  void find_up_direction(const SurfaceKeeper& surfaces, Draft& draft) const;
+  static std::vector<PlaneId> around(const std::set<PlaneId>& changed, const SurfaceKeeper& surfaces,
+                                     const Map& map);
+  void classify(const std::vector<PlaneId>& candidates, const SurfaceKeeper& surfaces, Draft& draft) const;
+  SurfaceRole judge(const Map& map, const SurfaceKeeper& surfaces, PlaneId id, RoleVotes& votes) const;
+  bool another_is_the_wall(const Map& map, const SurfaceKeeper& surfaces, PlaneId id) const;
+  static SurfaceFacts facts_of(const Map& map, const MappedPlane& plane, const KnownSurface& known,
+                               const StretchPoses& stretches);
+  void pair_faces(const std::vector<PlaneId>& candidates, const SurfaceKeeper& surfaces, Draft& draft) const;
+  void remove_hidden_landmarks(KeyframeId keyframe, const SurfaceKeeper& surfaces, Draft& draft) const;
 
   SceneBuilderOptions options_;
   Camera camera_;
-  std::map<PlaneId, PlaneEvidence> evidence_;  // once it is known which way is up
-  std::set<KeyframeId> told_;                  // keyframes whose rays are in it
-  bool merges_all_ = false;                    // maps were joined since the last proposal
 };
 
 }  // namespace vsgraphs

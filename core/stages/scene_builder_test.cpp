@@ -20,14 +20,20 @@ class SceneBuilderTest : public ::testing::Test {
   KeyframeId see(const Se3& pose, const Points& points = {}) {
     Keyframe keyframe = keyframe_seeing(camera, pose, points);
     keyframe.surface = std::make_shared<const DepthGrid>(view(world, pose, camera));
-    const KeyframeId id = add_keyframe(map, keyframe);
+    const KeyframeId id = map.keyframes().next_id();
+    apply({map.version(), {AddKeyframe{id, keyframe}}});
     if (propose_at_once) propose(id);
     return id;
   }
   void propose(KeyframeId id, const LabelGrid* labels = nullptr) {
-    const MapEdit edit = builder.propose(id, map.snapshot(), labels, nullptr);
+    apply(builder.associate(id, map.snapshot(), surfaces, labels, nullptr));
+    apply(builder.interpret(id, map.snapshot(), surfaces, nullptr));
+  }
+  void apply(const MapEdit& edit) {
     hashes.push_back(edit.hash());
+    const Snapshot before = map.snapshot();
     map.apply(edit);
+    surfaces.follow(*before, edit, map, nullptr);
   }
   LabelGrid all_labelled(SurfaceRole role, float confidence) const {
     LabelGrid labels;
@@ -60,6 +66,7 @@ class SceneBuilderTest : public ::testing::Test {
   World world = World().room({-4, -3, 0}, {4, 3, 2.5});
   Map map;
   SceneBuilder builder{SceneBuilderOptions{}, camera};
+  SurfaceKeeper surfaces{camera.depth_noise};
   std::vector<std::uint64_t> hashes;
   bool propose_at_once = true;
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), south = -Eigen::Vector3d::UnitY();
@@ -119,14 +126,14 @@ TEST_F(SceneBuilderTest, VotesChangeAClassAndItCanBeLostAgain) {
   EXPECT_EQ(role_at({0, 3, 1}, south), SurfaceRole::wall);
 }
 
-TEST_F(SceneBuilderTest, AWallWhoseObserversAreAllRetiredStaysOneForABuilderThatStartsAnew) {
+TEST_F(SceneBuilderTest, AWallWhoseObserversAreAllRetiredStaysOneWhereSurfacesAreGatheredAnew) {
   walk();
   const PlaneId wall = planes_at({0, 3, 1}, south)[0];
   std::vector<KeyframeId> seen;
   for (const PlaneObservation& o : plane(wall).observations) seen.push_back(o.keyframe);
   const KeyframeId stays = see(looking({0, 0, 1.4}, {0, -3, 0.7}));
-  for (const KeyframeId id : seen) map.apply(RemoveKeyframe{id, stays});
-  builder = SceneBuilder(SceneBuilderOptions{}, camera);
+  for (const KeyframeId id : seen) apply({map.version(), {RemoveKeyframe{id, stays}}});
+  surfaces.gather(map);
   see(looking({0.3, 0, 1.4}, {0.3, -3, 0.7}));
   EXPECT_EQ(plane(wall).role, SurfaceRole::wall) << "nobody alive sees it";
   for (const double x : {-0.3, 0.3}) see(looking({x, 0, 1.4}, {x, 3, 0.7}));
@@ -212,11 +219,41 @@ TEST_F(SceneBuilderTest, PointsBehindAWallGoThoseThroughItsOpeningStay) {
   EXPECT_TRUE(map.landmarks().contains(landmarks[2])) << "on the wall";
 }
 
+TEST_F(SceneBuilderTest, WhatIsKnownOfAWallGoesAlongWithALoop) {
+  const auto with_door = [](double x) {
+    return World()
+        .room({-4 + x, -3, 0}, {4 + x, 6, 2.5})
+        .box({-4 + x, 3, 0}, {-0.5 + x, 3.1, 2.5})
+        .box({0.5 + x, 3, 0}, {4 + x, 3.1, 2.5})
+        .box({-0.5 + x, 3, 2}, {0.5 + x, 3.1, 2.5});
+  };
+  world = with_door(0);
+  for (const double x : {-0.2, 0.0, 0.2}) see(looking({x, 0, 1.4}, {x, 3, 1.0}));
+  ASSERT_EQ(role_at({1, 3, 1}, south), SurfaceRole::wall);
+  // A loop takes it all 1 m along the wall.
+  const Se3 change = standing_at(1);
+  MapEdit loop{map.version(), {}};
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
+    loop.operations.push_back(MoveKeyframe{id, change * keyframe.world_from_camera});
+  });
+  map.planes().for_each([&](PlaneId id, const MappedPlane& p) {
+    loop.operations.push_back(MovePlane{id, p.plane.transformed(change)});
+  });
+  apply(loop);
+  world = with_door(1);
+  propose_at_once = false;
+  const Points through_the_door = {{1, 5, 1.2}};
+  const KeyframeId next = see(looking({1, 0, 1.4}, {1, 3, 1.0}), through_the_door);
+  const LandmarkId landmark = add_landmarks(map, through_the_door, {next})[0];
+  propose(next);
+  EXPECT_TRUE(map.landmarks().contains(landmark)) << "held against the wall where it stood before";
+}
+
 TEST_F(SceneBuilderTest, EqualKeyframesMakeEqualEdits) {
   walk();
   const std::vector<std::uint64_t> first = hashes;
   map = Map{};
-  builder = SceneBuilder(SceneBuilderOptions{}, camera);
+  surfaces.gather(map);
   hashes.clear();
   walk();
   EXPECT_EQ(hashes, first);
@@ -224,8 +261,8 @@ TEST_F(SceneBuilderTest, EqualKeyframesMakeEqualEdits) {
 
 TEST_F(SceneBuilderTest, WithoutDepthNothingIsProposed) {
   const KeyframeId id = add_keyframe(map, keyframe_seeing(camera, {}, {}));
-  EXPECT_THAT(builder.propose(id, map.snapshot(), nullptr, nullptr).operations, IsEmpty());
-  EXPECT_THAT(builder.propose(KeyframeId{9, 0}, map.snapshot(), nullptr, nullptr).operations, IsEmpty());
+  EXPECT_THAT(builder.associate(id, map.snapshot(), surfaces, nullptr, nullptr).operations, IsEmpty());
+  EXPECT_THAT(builder.associate(KeyframeId{9, 0}, map.snapshot(), surfaces, nullptr, nullptr).operations, IsEmpty());
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/scene/plane_extent.h"
 
 namespace vsgraphs {
 namespace {
@@ -15,23 +14,16 @@ Se3 levelling(const Eigen::Vector3d& up) {
 }
 
 // One point for each cell in which the plane was seen.
-std::vector<Eigen::Vector3f> seen_points(const Map& map, const MappedPlane& plane,
+std::vector<Eigen::Vector3f> seen_points(const MappedPlane& plane, const KnownSurface* known,
                                          const Se3& level_from_world) {
-  const PlaneExtent extent = extent_of(map, plane);
   std::vector<Eigen::Vector3f> points;
-  const auto& cells = extent.cells();
-  for (int t = cells.min_t(); t < cells.end_t(); ++t) {
-    for (int s = cells.min_s(); s < cells.end_s(); ++s) {
-      if (!cells.at({s, t})) continue;
-      const Eigen::Vector3d middle =
-          extent.frame().point((s + 0.5) * PlaneExtent::cell_m, (t + 0.5) * PlaneExtent::cell_m);
-      points.push_back((level_from_world * middle).cast<float>());
-    }
-  }
+  if (!known) return points;
+  for (const Eigen::Vector3d& middle : known->extent().points())
+    points.push_back((level_from_world * plane.plane.project(middle)).cast<float>());
   return points;
 }
 
-SceneFaces faces_of(const Map& map, const Se3& level_from_world) {
+SceneFaces faces_of(const Map& map, const SurfaceKeeper& surfaces, const Se3& level_from_world) {
   SceneFaces faces;
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
     auto* list = plane.role == SurfaceRole::wall      ? &faces.walls
@@ -40,18 +32,21 @@ SceneFaces faces_of(const Map& map, const Se3& level_from_world) {
                                                       : nullptr;
     if (list)
       list->push_back(
-          {id, plane.plane.transformed(level_from_world), seen_points(map, plane, level_from_world)});
+          {id, plane.plane.transformed(level_from_world), seen_points(plane, surfaces.find(id), level_from_world)});
   });
   return faces;
 }
 
-void place_nodes(const Map& map, FoundStructure& found) {
+Eigen::Vector3d middle_of(const Map& map, const SurfaceKeeper& surfaces, PlaneId id) {
+  const AnchoredPlane& plane = map.planes().find(id)->plane;
+  const KnownSurface* known = surfaces.find(id);
+  return plane.project(known ? known->mean_middle(surfaces.stretches()) : plane.anchor);
+}
+
+void place_nodes(const Map& map, const SurfaceKeeper& surfaces, FoundStructure& found) {
   for (const FoundRoom& room : found.rooms) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const PlaneId id : room.walls) {
-      const MappedPlane& wall = *map.planes().find(id);
-      sum += wall.plane.project(map.observed_centre(wall));
-    }
+    for (const PlaneId id : room.walls) sum += middle_of(map, surfaces, id);
     found.room_nodes.push_back(sum / static_cast<double>(std::max<std::size_t>(1, room.walls.size())));
   }
   for (const FoundFloor& floor : found.floors) {
@@ -104,7 +99,8 @@ void StructureBuilder::absorb(const Map& map, const FreeSpace& free_space) {
   }
 }
 
-MapEdit StructureBuilder::propose(const Snapshot& snapshot, double timestamp_s, bool last, TraceSink* trace) {
+MapEdit StructureBuilder::propose(const Snapshot& snapshot, const SurfaceKeeper& surfaces, double timestamp_s,
+                                  bool last, TraceSink* trace) {
   last_pass_s_ = timestamp_s;
   Draft draft(snapshot);
   const Map& map = draft.map();
@@ -116,10 +112,10 @@ MapEdit StructureBuilder::propose(const Snapshot& snapshot, double timestamp_s, 
   }
   const Span span(trace, "find_rooms");
   auto found = std::make_shared<FoundStructure>(
-      recognise_structure(free_space_, faces_of(map, level_from_world), map.structure(), options_.structure));
+      recognise_structure(free_space_, faces_of(map, surfaces, level_from_world), map.structure(), options_.structure));
   found->sought = true;
   found->level_from_world = level_from_world;
-  place_nodes(map, *found);
+  place_nodes(map, surfaces, *found);
   draft.record(SetStructure{std::move(found)});
   return draft.take();
 }

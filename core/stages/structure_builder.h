@@ -6,6 +6,7 @@
 #include "core/base/trace.h"
 #include "core/map/draft.h"
 #include "core/scene/structure.h"
+#include "core/scene/surface_keeper.h"
 
 namespace vsgraphs {
 
@@ -32,7 +33,8 @@ class StructureBuilder {
     return !last_pass_s_ || timestamp_s >= *last_pass_s_ + options_.interval_s;
   }
   // One pass. `last`: nothing comes after it, so everything that was corrected is carved anew.
-  MapEdit propose(const Snapshot& snapshot, double timestamp_s, bool last, TraceSink* trace);
+  MapEdit propose(const Snapshot& snapshot, const SurfaceKeeper& surfaces, double timestamp_s, bool last,
+                  TraceSink* trace);
 
   // The free space so far.
   const FreeSpace& free_space() const { return free_space_; }

@@ -22,7 +22,7 @@ class CarvingTest : public ::testing::Test {
     map_.apply(vsgraphs::SetUp{-Eigen::Vector3d::UnitY()});
   }
   std::vector<KeyframeId> carved() {
-    builder_.propose(map_.snapshot(), 0, true, nullptr);
+    builder_.propose(map_.snapshot(), SurfaceKeeper(), 0, true, nullptr);
     std::vector<KeyframeId> ids;
     for (const auto& [id, view] : builder_.free_space().views()) ids.push_back(id);
     return ids;
@@ -44,7 +44,7 @@ TEST_F(CarvingTest, UnlessOthersReplaceIt) {
   map_.apply(RemoveKeyframe{keyframes_[1], keyframes_[0], true});
   EXPECT_THAT(carved(), testing::ElementsAre(keyframes_[0], keyframes_[2]));
   StructureBuilder anew{StructureBuilderOptions{}};
-  anew.propose(map_.snapshot(), 0, true, nullptr);
+  anew.propose(map_.snapshot(), SurfaceKeeper(), 0, true, nullptr);
   EXPECT_EQ(builder_.free_space().voxels().memory_bytes(), anew.free_space().voxels().memory_bytes());
 }
 
