@@ -34,8 +34,11 @@ void Followers::catch_up(const Map& map, bool all, const Guard& guard) {
   for (const auto& follower : all_) guard(follower->serves(), [&] { follower->catch_up(map, all); });
 }
 
-void Followers::gather(const Map& map) const {
-  for (const auto& follower : all_) follower->gather(map);
+void Followers::start(const Map& map, const Followers& known) const {
+  for (const auto& follower : all_) {
+    const Follower* same = same_kind(*follower, &known);
+    if (!same || !follower->adopt(*same)) follower->gather(map);
+  }
 }
 
 }  // namespace vsgraphs

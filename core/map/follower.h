@@ -30,10 +30,16 @@ class Follower {
   // From the map alone, in place of what is known: where none was saved with the map.
   virtual void gather(const Map& map) = 0;
 
+  // Goes on from what another of its kind knew of the same map, which was saved or made with other options. False, and nothing
+  // is known: it does not fit; gather().
+  virtual bool adopt(const Follower& known) = 0;
+
   virtual std::shared_ptr<Follower> copy() const = 0;
   virtual void save(ArchiveWriter& archive, const std::string& section) const = 0;
   // Throws InputError as archives do.
   virtual void load(const ArchiveReader& archive, const std::string& section) = 0;
+  // A line for the user about what it had to leave out; empty: nothing.
+  virtual std::string warning() const { return {}; }
   // What of it does not fit the map; nullptr if all does.
   virtual Wrong wrong_with(const Map& map) const = 0;
 };
@@ -54,7 +60,8 @@ class Followers {
   void follow(const Map& before, const MapEdit& edit, const Map& after, const Followers* absorbed,
               const Guard& guard);
   void catch_up(const Map& map, bool all, const Guard& guard);
-  void gather(const Map& map) const;
+  // From what was known of the map, or where there is nothing of a kind that fits, from the map.
+  void start(const Map& map, const Followers& known) const;
 
   // nullptr where there is none of this kind.
   template <typename Kind>

@@ -62,7 +62,8 @@ class Map {
   // The patch behind an observation, whether its keyframe lives or is retired; nullptr if there is none.
   const SurfacePatch* patch(const PlaneObservation& observation) const;
 
-  // Mean of the middles of the plane's patches, world; its anchor if there are none. Linear in the observations.
+  // Mean of the middles of the plane's patches, world; its anchor if there are none. Of at most some hundred of them, evenly spread
+  // over all: what it costs does not grow.
   Eigen::Vector3d observed_centre(const MappedPlane& plane) const;
 
   // Where the marker's observations say it hangs. Linear in them.

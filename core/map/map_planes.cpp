@@ -23,9 +23,12 @@ const SurfacePatch* Map::patch(const PlaneObservation& observation) const {
 }
 
 Eigen::Vector3d Map::observed_centre(const MappedPlane& plane) const {
+  constexpr std::size_t enough = 256;
+  const std::size_t step = 1 + plane.observations.size() / enough;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
-  for (const PlaneObservation& observation : plane.observations) {
+  for (std::size_t i = 0; i < plane.observations.size(); i += step) {
+    const PlaneObservation& observation = plane.observations[i];
     const SurfacePatch* seen = patch(observation);
     const auto pose = resolve({observation.keyframe, Se3{}});
     if (!seen || !pose) continue;

@@ -32,6 +32,7 @@ class SurfaceKeeper : public Follower {
   const char* serves() const override { return "planes"; }
   void follow(const Map& before, const MapEdit& edit, const Map& after, const Follower* absorbed) override;
   void gather(const Map& map) override;
+  bool adopt(const Follower& known) override;
   std::shared_ptr<Follower> copy() const override { return std::make_shared<SurfaceKeeper>(*this); }
   void save(ArchiveWriter& archive, const std::string& section) const override;
   void load(const ArchiveReader& archive, const std::string& section) override;

@@ -10,6 +10,13 @@ void SurfaceKeeper::save(ArchiveWriter& archive, const std::string& section) con
   archive.add(section, known_, told_, stretches_, up_);
 }
 
+bool SurfaceKeeper::adopt(const Follower& known) {
+  const DepthNoise noise = noise_;
+  *this = dynamic_cast<const SurfaceKeeper&>(known);
+  noise_ = noise;
+  return true;
+}
+
 void SurfaceKeeper::load(const ArchiveReader& archive, const std::string& section) {
   *this = SurfaceKeeper(noise_);
   archive.read(section, known_, told_, stretches_, up_);

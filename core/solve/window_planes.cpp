@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <span>
 
 #include "core/solve/condense_observations.h"
 #include "core/solve/factors/plane_observation.h"
@@ -35,30 +37,27 @@ struct SeenByPose {
 class PlaneGathering {
  public:
   PlaneGathering(const Map& map, const WindowProblem& problem)
-      : map_(map), problem_(problem), pose_of_(pose_positions(map, problem)) {}
+      : map_(map), problem_(problem), pose_of_(pose_positions(map, problem)) {
+    for (const KeyframeId id : problem.keyframe_of_pose) near_.insert(map.stretch_of(id));
+  }
 
   // Sorts a plane's observations; false if no free pose sees it, unless it is `wanted` all the same.
   bool gather(const MappedPlane& plane, bool wanted) {
     inside_.clear();
     outside_.clear();
-    bool free = false;
-    for (const PlaneObservation& o : plane.observations) {
-      const SurfacePatch* patch = map_.patch(o);
-      const auto living = map_.reanchor({o.keyframe, Se3{}});
-      if (!patch || !living) continue;
-      const PlaneEstimate seen =
-          plane_estimate(*patch).inflated(frame_error).transformed(living->keyframe_from_camera);
-      const int pose = pose_of_[living->keyframe.index];
-      const bool fixed = pose >= 0 && problem_.bundle.pose_fixed[static_cast<std::size_t>(pose)];
-      if (pose >= 0 && !fixed) {
-        free = true;
-        inside_.push_back({pose, seen});
-      } else {
-        const Se3& placed = map_.keyframes().find(living->keyframe)->world_from_camera;
-        outside_.push_back({(fixed ? seen : seen.inflated(outer_pose_error)).transformed(placed)});
-      }
+    free_ = false;
+    if (carrier_of(plane).valid()) return false;
+    KeyframeId stretch;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i <= plane.observations.size(); ++i) {
+      const bool ends = i == plane.observations.size();
+      const KeyframeId here = ends ? KeyframeId{} : map_.stretch_of(plane.observations[i].keyframe);
+      if (!ends && here == stretch) continue;
+      take(std::span(plane.observations).subspan(first, i - first), near_.contains(stretch));
+      stretch = here;
+      first = i;
     }
-    return (free || wanted) && !carrier_of(plane).valid();
+    return free_ || wanted;
   }
   const std::vector<SeenByPose>& inside() const { return inside_; }
   const std::vector<WeightedPlane>& outside() const { return outside_; }
@@ -72,9 +71,37 @@ class PlaneGathering {
   }
 
  private:
+  // What the keyframes of one stretch saw of it, one after the other. From outside the window some of them say what all do, each
+  // for its neighbours: keyframes of a stretch see a plane from much the same place, and what a window costs must not grow with
+  // all that was ever seen.
+  void take(std::span<const PlaneObservation> observations, bool near) {
+    constexpr std::size_t enough = 8;
+    const std::size_t step = near ? 1 : 1 + (observations.size() - 1) / enough;
+    for (std::size_t i = 0; i < observations.size(); i += step)
+      take(observations[i], static_cast<double>(std::min(step, observations.size() - i)));
+  }
+  void take(const PlaneObservation& o, double weight) {
+    const SurfacePatch* patch = map_.patch(o);
+    const auto living = map_.reanchor({o.keyframe, Se3{}});
+    if (!patch || !living) return;
+    const PlaneEstimate seen =
+        plane_estimate(*patch).inflated(frame_error).transformed(living->keyframe_from_camera);
+    const int pose = pose_of_[living->keyframe.index];
+    const bool fixed = pose >= 0 && problem_.bundle.pose_fixed[static_cast<std::size_t>(pose)];
+    if (pose >= 0 && !fixed) {
+      free_ = true;
+      inside_.push_back({pose, seen});
+    } else {
+      const Se3& placed = map_.keyframes().find(living->keyframe)->world_from_camera;
+      outside_.push_back({(fixed ? seen : seen.inflated(outer_pose_error)).transformed(placed), weight});
+    }
+  }
+
   const Map& map_;
   const WindowProblem& problem_;
   std::vector<int> pose_of_;
+  std::set<KeyframeId> near_;  // stretches with a keyframe in the window
+  bool free_ = false;
   std::vector<SeenByPose> inside_;
   std::vector<WeightedPlane> outside_;
 };

@@ -94,6 +94,16 @@ KeyframeId made_here_before(const CullingOptions& options, const Map& map, Keyfr
   return {};
 }
 
+// Whether at least so many other keyframes see the plane; one may have several patches on it.
+bool seen_by_others(const MappedPlane& plane, KeyframeId id, int enough) {
+  std::set<KeyframeId> others;
+  for (const PlaneObservation& o : plane.observations) {
+    if (o.keyframe != id) others.insert(o.keyframe);
+    if (static_cast<int>(others.size()) >= enough) return true;
+  }
+  return enough <= 0;
+}
+
 // What a keyframe that is about to go saw of planes that enough others saw; its patches, if that was all. Retired ones that
 // kept theirs count: a plane that few living ones see would otherwise gather another sight at every return.
 void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft) {
@@ -101,15 +111,10 @@ void forget_surfaces(const CullingOptions& options, KeyframeId id, Draft& draft)
   bool all = true;
   draft.map().planes().for_each([&](PlaneId plane_id, const MappedPlane& plane) {
     std::vector<PlaneObservation> own;
-    std::set<KeyframeId> others;  // one keyframe may have several patches on a plane
-    for (const PlaneObservation& o : plane.observations) {
-      if (o.keyframe == id)
-        own.push_back(o);
-      else
-        others.insert(o.keyframe);
-    }
+    for (const PlaneObservation& o : plane.observations)
+      if (o.keyframe == id) own.push_back(o);
     if (own.empty()) return;
-    if (others.size() < static_cast<std::size_t>(options.redundant_witnesses)) {
+    if (!seen_by_others(plane, id, options.redundant_witnesses)) {
       all = false;
       return;
     }

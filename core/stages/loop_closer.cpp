@@ -40,21 +40,6 @@ const char* to_string(LoopVerdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-bool follow(const Map& map, PlaceIndex& places) {
-  bool changed = false;
-  for (const KeyframeId id : places.keyframes()) {
-    if (map.keyframes().contains(id)) continue;
-    places.remove(id);
-    changed = true;
-  }
-  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    if (places.contains(id)) return;
-    places.add(id, *keyframe.features);
-    changed = true;
-  });
-  return changed;
-}
-
 LoopCloser::LoopCloser(const LoopCloserOptions& options, const Camera& camera, const ScalePyramid& pyramid,
                        std::uint64_t seed)
     : options_(options),

@@ -90,7 +90,7 @@ class LoopCloser {
              std::uint64_t seed);
 
   // Whether `keyframe`, which is in the snapshot, closes a loop, and the edit if it does. `places` holds the snapshot's
-  // keyframes (see follow()). Cost: some ms where nothing is similar; about 20 ms per candidate; up to a second once for a
+  // keyframes (PlaceKeeper). Cost: some ms where nothing is similar; about 20 ms per candidate; up to a second once for a
   // closed loop in a map of thousands of keyframes.
   std::optional<MapEdit> close(KeyframeId keyframe, const Snapshot& snapshot, const PlaceIndex& places,
                                LoopReport& report, TraceSink* trace);
@@ -135,9 +135,5 @@ class LoopCloser {
   std::uint64_t seed_;
   std::optional<KeyframeId> last_closed_;
 };
-
-// Brings the index up to the map: adds keyframes that are new, removes those that were culled. Whether there was anything to
-// do; linear in the keyframes where there was not.
-bool follow(const Map& map, PlaceIndex& places);
 
 }  // namespace vsgraphs

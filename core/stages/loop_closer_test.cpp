@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/stages/loop_test_world.h"
+#include "core/vision/place_keeper.h"
 
 namespace vsgraphs {
 namespace {
@@ -161,10 +162,10 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FollowTheMap, AddsNewKeyframesAndRemovesCulledOnes) {
   LoopWorld world(drifting());
   PlaceIndex places;
-  follow(world.map, places);
+  complete(world.map, places);
   EXPECT_EQ(places.size(), 34);
   world.map.apply(RemoveKeyframe{world.ids[7], world.ids[6]});
-  follow(world.map, places);
+  complete(world.map, places);
   EXPECT_EQ(places.size(), 33);
   EXPECT_FALSE(places.contains(world.ids[7]));
 }

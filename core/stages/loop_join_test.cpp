@@ -3,6 +3,7 @@
 
 #include "core/stages/loop_closer.h"
 #include "core/stages/loop_test_world.h"
+#include "core/vision/place_keeper.h"
 
 namespace vsgraphs {
 namespace {
@@ -52,7 +53,7 @@ class Join : public ::testing::Test {
   }
   static KnownMap known(Map& map) {
     PlaceIndex places;
-    follow(map, places);
+    complete(map, places);
     return {map.snapshot(), std::make_shared<const PlaceIndex>(places)};
   }
   static KeyframeId newest(const Map& map) {

@@ -5,6 +5,7 @@
 
 #include "core/stages/loop_closer.h"
 #include "core/stages/loop_test_world.h"
+#include "core/vision/place_keeper.h"
 
 namespace vsgraphs {
 namespace {
@@ -34,7 +35,7 @@ class TwoRooms : public ::testing::Test {
     level << 1, 0, 0, 0, 0, 1, 0, -1, 0;  // the world's y points down
     structure->level_from_world = {level, Eigen::Vector3d::Zero()};
     world_.map.apply(SetStructure{structure});
-    follow(world_.map, places_);
+    complete(world_.map, places_);
   }
   std::vector<KeyframeId> likely(int like, RoomNumber last_room) {
     const Map& map = world_.map;

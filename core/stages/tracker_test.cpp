@@ -11,6 +11,7 @@
 #include "core/stages/local_mapper.h"
 #include "core/stages/loop_closer.h"
 #include "core/vision/test_painted_wall.h"
+#include "core/vision/place_keeper.h"
 
 namespace vsgraphs {
 namespace {
@@ -60,7 +61,7 @@ class TrackerTest : public ::testing::Test {
   void apply(const MapEdit& edit) {
     map_.apply(edit);
     snapshot_ = map_.snapshot();
-    follow(map_, places_);
+    complete(map_, places_);
   }
   KnownMaps known() const { return {{snapshot_, std::make_shared<const PlaceIndex>(places_)}, dormant_}; }
   // Frames 0..count-1 at 3 px each, as a camera moves that is followed well.

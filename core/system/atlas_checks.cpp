@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/scene/free_space_checks.h"
-
 namespace vsgraphs {
 
 namespace {
@@ -58,13 +56,9 @@ bool is_text(const std::string& text) {
 Wrong wrong_with(const MapState& state) {
   if (state.map->keyframes().index_bound() > PlaceSegment::most_keyframes)
     return "it numbers more keyframes than there can be";
-  if (state.places) {
-    const auto& living = state.map->keyframes();
-    const auto places = state.places->keyframes();
-    if (!std::all_of(places.begin(), places.end(), [&](KeyframeId id) { return living.contains(id); }))
-      return "a place index of a keyframe that does not exist";
-  }
-  return state.free_space ? wrong_with_free_space(*state.free_space, *state.map) : nullptr;
+  for (const auto& follower : state.followers.all())
+    if (Wrong wrong = follower->wrong_with(*state.map)) return wrong;
+  return nullptr;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "core/base/check.h"
 #include "core/map/map_archive.h"
 #include "core/system/atlas_checks.h"
+#include "core/system/followers.h"
 
 namespace vsgraphs {
 
@@ -13,19 +14,17 @@ namespace {
 
 std::string prefix(std::uint32_t number) { return "map" + std::to_string(number); }
 
-MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
+MapState load_map_state(const ArchiveReader& archive, const std::string& name, const Camera& camera) {
   MapState state;
   state.map = std::make_shared<const Map>(load_map(archive, name));
-  if (archive.has(name + "/places")) {
-    auto places = std::make_shared<PlaceIndex>();
-    archive.read(name + "/places", *places);
-    state.places = std::move(places);
+  std::vector<std::shared_ptr<Follower>> found;
+  for (const auto& follower : make_followers(Config{}, camera).all()) {
+    const std::string section = name + "/" + follower->name();
+    if (!archive.has(section)) continue;
+    follower->load(archive, section);
+    found.push_back(follower);
   }
-  if (archive.has(name + "/free_space")) {
-    auto free_space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
-    archive.read(name + "/free_space", *free_space);
-    state.free_space = std::move(free_space);
-  }
+  state.followers = Followers(std::move(found));
   return state;
 }
 
@@ -53,8 +52,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
   for (const MapState& state : atlas.state.maps) {
     const std::string name = prefix(number++);
     save_map(archive, name, *state.map);
-    if (state.places) archive.add(name + "/places", *state.places);
-    if (state.free_space) archive.add(name + "/free_space", *state.free_space);
+    for (const auto& follower : state.followers.all()) follower->save(archive, name + "/" + follower->name());
   }
 }
 
@@ -74,7 +72,7 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   std::uint32_t maps = 0;
   archive.read("maps", maps, atlas.map_names);
   load_shared_constants(archive);
-  for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i)));
+  for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i), atlas.camera));
   if (Wrong wrong = wrong_with_atlas(atlas)) archive.damaged(wrong);
   return atlas;
 }

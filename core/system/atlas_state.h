@@ -5,17 +5,21 @@
 #include <memory>
 #include <vector>
 
-#include "core/map/map.h"
-#include "core/scene/free_space.h"
-#include "core/vision/place_index.h"
+#include "core/map/follower.h"
+#include "core/vision/place_keeper.h"
 
 namespace vsgraphs {
 
 // One map with what was derived from it and costs time to derive again. Never changed once made.
 struct MapState {
   Snapshot map;
-  std::shared_ptr<const PlaceIndex> places;
-  std::shared_ptr<const FreeSpace> free_space;  // none where rooms are not sought
+  Followers followers;  // some or all of what follows it
+
+  // Null where it was not kept.
+  std::shared_ptr<const PlaceIndex> places() const {
+    const auto* keeper = followers.find<PlaceKeeper>();
+    return keeper ? keeper->places() : nullptr;
+  }
 };
 
 // One saved file, by what is in it: the numbers say nothing but whether two are the same. Zeros: none.

@@ -21,8 +21,8 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
       scene_(config.scene, camera),
       structure_(config.structure),
       loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
-      place_options_(config.places),
-      places_(config.places),
+      new_followers_(make_followers(config, camera)),
+      followers_(new_followers_.copy()),
       model_{camera, config.orb.pyramid().factor, config.factors},
       cell_(cell),
       spans_("local mapping"),
@@ -35,7 +35,10 @@ void MapOwner::work_on(const KeyframeRequest& request, const std::function<bool(
                        const std::function<bool()>& stop) {
   const auto go_on = [&stop] { return !stop || !stop(); };
   insert(request);
-  if (options_.builds_scene()) find_planes();
+  if (options_.builds_scene()) {
+    find_planes();
+    interpret_planes();
+  }
   if (options_.builds_structure() && rooms_due() && go_on()) find_rooms(false);
   refine(stop_refining);
   if (go_on()) look_for_loop();
@@ -72,27 +75,37 @@ void MapOwner::insert(const KeyframeRequest& request) {
 }
 
 void MapOwner::find_planes() {
-  scene_spans_.set_frame(newest_frame_);
-  MapEdit edit;
-  const bool found = guard_.run("planes", [&] {
-    const Span span(&scene_spans_, "find_planes");
-    edit = scene_.propose(newest_, snapshot_, nullptr, &scene_spans_);
-  });
-  if (found) apply(edit, {EditEvent::Kind::planes, newest_frame_, 0, 0});
+  seek_planes(newest_, nullptr, {EditEvent::Kind::planes, newest_frame_, 0, 0});
 }
 
 bool MapOwner::label(std::int64_t frame_index, const LabelGrid& labels) {
+  looked_at_ = {};
   const KeyframeId labelled = map_.keyframe_of_frame(frame_index);
-  if (!labelled.valid()) return false;
-  scene_spans_.set_frame(frame_index);
+  if (labelled.valid()) seek_planes(labelled, &labels, {EditEvent::Kind::labels, frame_index, 0, 0});
+  return looked_at_.valid();
+}
+
+void MapOwner::seek_planes(KeyframeId keyframe, const LabelGrid* labels, EditEvent event) {
+  scene_spans_.set_frame(event.frame);
+  looked_at_ = {};
   MapEdit edit;
   const bool found = guard_.run("planes", [&] {
-    const Span span(&scene_spans_, "label_planes");
-    edit = scene_.propose(labelled, snapshot_, &labels, &scene_spans_);
+    const Span span(&scene_spans_, labels ? "label_planes" : "find_planes");
+    edit = scene_.associate(keyframe, snapshot_, *followers_.find<SurfaceKeeper>(), labels, &scene_spans_);
   });
-  if (!found) return false;
-  apply(edit, {EditEvent::Kind::labels, frame_index, 0, 0});
-  return true;
+  if (!found) return;
+  apply(edit, event);
+  looked_at_ = keyframe;
+}
+
+void MapOwner::interpret_planes() {
+  if (!looked_at_.valid()) return;
+  MapEdit edit;
+  const bool done = guard_.run("planes", [&] {
+    edit = scene_.interpret(looked_at_, snapshot_, *followers_.find<SurfaceKeeper>(), &scene_spans_);
+  });
+  looked_at_ = {};
+  if (done) apply(edit, {EditEvent::Kind::roles, newest_frame_, 0, 0});
 }
 
 bool MapOwner::mark(std::int64_t frame_index, const MarkerDetections& detections) {
@@ -115,7 +128,7 @@ void MapOwner::look_for_loop() {
   const Span span(&spans_, "look_for_loop");
   guard_.run("loops", [&] {
     LoopReport report;
-    if (auto edit = loop_closer_.close(newest_, snapshot_, places_, report, &spans_))
+    if (auto edit = loop_closer_.close(newest_, snapshot_, *followers_.find<PlaceKeeper>()->places(), report, &spans_))
       loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
     tally(tallies_.loops, report, *snapshot_);
   });
@@ -190,9 +203,15 @@ void MapOwner::finish_adjustment() {
 void MapOwner::find_rooms(bool last) {
   scene_spans_.set_frame(newest_frame_);
   MapEdit edit;
+  {
+    const Span span(&scene_spans_, "follow_map");
+    followers_.catch_up(*snapshot_, last, guarded());
+    warn();
+  }
   const bool found = guard_.run("rooms", [&] {
     const Span span(&scene_spans_, "find_structure");
-    edit = structure_.propose(snapshot_, newest_s_, last, &scene_spans_);
+    edit = structure_.propose(snapshot_, *followers_.find<SpaceKeeper>(), *followers_.find<SurfaceKeeper>(), newest_s_,
+                              &scene_spans_);
   });
   if (!found) return;
   apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
@@ -204,20 +223,35 @@ void MapOwner::refine(const std::function<bool()>& stop) {
   apply(edit, {EditEvent::Kind::refine, newest_frame_, report.iterations, 0});
 }
 
-void MapOwner::apply(const MapEdit& edit, EditEvent event) {
-  const Span span(&spans_, "apply_edit");
-  map_.apply(edit);
-  snapshot_ = map_.snapshot();
+void MapOwner::apply(const MapEdit& edit, EditEvent event, const Followers* absorbed) {
+  const Snapshot before = snapshot_;
+  {
+    const Span span(&spans_, "apply_edit");
+    map_.apply(edit);
+    snapshot_ = map_.snapshot();
+  }
+  {
+    const Span span(&spans_, "follow_edit");
+    followers_.follow(*before, edit, *snapshot_, absorbed, guarded());
+  }
   event.hash = edit.hash();
   edits_.push_back(event);
   publish();
 }
 
+void MapOwner::warn() {
+  for (const auto& follower : followers_.all())
+    if (const std::string line = follower->warning(); !line.empty()) guard_.warn(line);
+}
+
+Followers::Guard MapOwner::guarded() {
+  return [this](const char* part, const std::function<void()>& work) { return guard_.run(part, work); };
+}
+
 void MapOwner::publish() {
-  if (follow(*snapshot_, places_) || !published_places_)
-    published_places_ = std::make_shared<const PlaceIndex>(places_);
-  cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_), published_places_,
-                 published_dormant_, counts_, published_tallies_, guard_.warnings()});
+  cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_),
+                 followers_.find<PlaceKeeper>()->places(), published_dormant_, counts_, published_tallies_,
+                 guard_.warnings()});
 }
 
 }  // namespace vsgraphs

@@ -13,6 +13,7 @@
 #include "core/stages/scene_builder.h"
 #include "core/stages/structure_builder.h"
 #include "core/system/config.h"
+#include "core/system/followers.h"
 #include "core/system/markers.h"
 #include "core/system/schedule.h"
 #include "core/system/snapshot_cell.h"
@@ -36,9 +37,10 @@ class MapOwner {
   void end_run(const std::function<bool()>& stop = {});
 
   // One step each: request -> keyframe in the map; its planes -> map; a late segmentation of a keyframe -> its planes
-  // sought again; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
+  // sought again; what was made of planes that were sought -> map; window around the keyframe inserted last -> adjusted. `stop` is asked between iterations.
   void insert(const KeyframeRequest& request);
   void find_planes();
+  void interpret_planes();
   // After refine(): does the newest keyframe show a place mapped before? If so, close_loop() takes the drift since then
   // out and asks for the whole map to be adjusted.
   void look_for_loop();
@@ -68,7 +70,7 @@ class MapOwner {
   // Whether it is time to seek rooms again; `last`: at the end of the run.
   bool rooms_due() const { return !guard_.is_off("rooms") && structure_.due(newest_s_); }
   void find_rooms(bool last);
-  // False, and nothing done, if the frame is no keyframe (any more) of the map worked on.
+  // False, and nothing done, if the frame is no keyframe (any more) of the map worked on. interpret_planes() comes next.
   bool label(std::int64_t frame_index, const LabelGrid& labels);
   // Likewise for markers seen in its image.
   bool mark(std::int64_t frame_index, const MarkerDetections& detections);
@@ -77,8 +79,8 @@ class MapOwner {
   std::uint64_t version() const { return map_.version(); }
   std::int64_t newest_frame() const { return newest_frame_; }  // that became a keyframe
   const std::vector<EditEvent>& edits() const { return edits_; }
-  // Of the map worked on; a copy. Null where rooms are not sought.
-  std::shared_ptr<const FreeSpace> free_space() const;
+  // Of the map worked on; a copy.
+  Followers followers() const { return followers_.copy(); }
   // One lane for mapping, one for scene understanding.
   std::vector<const SpanRecorder*> spans() const { return {&spans_, &scene_spans_}; }
 
@@ -98,9 +100,14 @@ class MapOwner {
     MapJoin join;
   };
 
-  void apply(const MapEdit& edit, EditEvent event);
+  // `absorbed`: what followed the map that the edit takes in.
+  void apply(const MapEdit& edit, EditEvent event, const Followers* absorbed = nullptr);
   void publish();
   void start_from(const AtlasState& known);
+  Followers::Guard guarded();
+  void warn();
+  void seek_planes(KeyframeId keyframe, const LabelGrid* labels, EditEvent event);
+  void work_on_map(const Map& map, Followers followers);
   void put_to_sleep();
   void drop_small_maps();
   void wake(std::size_t dormant, EditEvent::Kind why, std::int64_t frame);
@@ -118,9 +125,9 @@ class MapOwner {
   SceneBuilder scene_;
   StructureBuilder structure_;
   LoopCloser loop_closer_;
-  PlaceIndexOptions place_options_;
-  PlaceIndex places_;
-  std::shared_ptr<const PlaceIndex> published_places_;
+  Followers new_followers_;  // of an empty map
+  Followers followers_;
+  KeyframeId looked_at_;  // whose planes were sought last
   int made_ = 0;  // keyframes of this run in the map worked on
   bool loaded_ = false;
   std::vector<DormantMap> dormant_;  // oldest first

@@ -6,33 +6,23 @@
 
 namespace vsgraphs {
 
-namespace {
-
-std::shared_ptr<const PlaceIndex> index_of(const MapState& state, const PlaceIndexOptions& options) {
-  PlaceIndex places = state.places ? *state.places : PlaceIndex(options);
-  const bool complete = !follow(*state.map, places) && state.places;
-  return complete ? state.places : std::make_shared<const PlaceIndex>(std::move(places));
-}
-
-}  // namespace
-
 void MapOwner::start_from(const AtlasState& known) {
   FirstIds unused;
   for (const MapState& state : known.maps) {
     unused = FirstIds::later(unused, state.map->unused_ids());
     if (state.map->keyframes().size() == 0) continue;
-    dormant_.push_back({{state.map, index_of(state, place_options_), state.free_space}, 0, true, false});
+    const Followers followers = new_followers_.copy();
+    followers.start(*state.map, state.followers);
+    dormant_.push_back({{state.map, followers}, 0, true, false});
   }
   if (!dormant_.empty()) {
     const MapState last = dormant_.back().state;
     dormant_.pop_back();
     map_ = *last.map;
     map_.apply(OpenMap{unused, 0});
-    places_ = *last.places;
-    published_places_ = last.places;
-    structure_.switch_to(last.free_space.get());
-    loaded_ = true;
     snapshot_ = map_.snapshot();
+    followers_ = last.followers;
+    loaded_ = true;
   }
   publish_dormant();
 }
@@ -43,8 +33,13 @@ void MapOwner::publish_dormant() {
   published_dormant_ = std::move(states);
 }
 
-std::shared_ptr<const FreeSpace> MapOwner::free_space() const {
-  return options_.builds_structure() ? std::make_shared<const FreeSpace>(structure_.free_space()) : nullptr;
+// The map's followers go along with it.
+void MapOwner::work_on_map(const Map& map, Followers followers) {
+  map_ = map;
+  snapshot_ = map_.snapshot();
+  followers_ = std::move(followers);
+  structure_.switch_map();
+  looked_at_ = {};
 }
 
 bool MapOwner::choose_map(const KeyframeRequest& request) {
@@ -82,7 +77,7 @@ void MapOwner::put_to_sleep() {
   const auto behind = std::find_if(dormant_.begin(), dormant_.end(),
                                    [&](const DormantMap& d) { return first_index(*d.state.map) > age; });
   dormant_.insert(behind,
-                  {{snapshot_, published_places_, free_space()}, made_, loaded_, adjustment_ != nullptr});
+                  {{snapshot_, followers_}, made_, loaded_, adjustment_ != nullptr});
   drop_adjustment();
 }
 
@@ -97,10 +92,7 @@ void MapOwner::open_new_map(std::int64_t frame) {
   const OpenMap opening{map_.unused_ids(), map_.version()};
   put_to_sleep();
   drop_small_maps();
-  map_ = Map{};
-  places_ = PlaceIndex(place_options_);
-  published_places_.reset();
-  structure_.switch_to(nullptr);
+  work_on_map(Map{}, new_followers_.copy());
   made_ = 0;
   loaded_ = false;
   publish_dormant();
@@ -112,10 +104,7 @@ void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) 
   dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(index));
   const OpenMap opening{map_.unused_ids(), map_.version()};
   put_to_sleep();
-  map_ = *woken.state.map;
-  places_ = *woken.state.places;
-  published_places_ = woken.state.places;
-  structure_.switch_to(woken.state.free_space.get());
+  work_on_map(*woken.state.map, woken.state.followers.copy());
   made_ = woken.made;
   loaded_ = woken.loaded;
   publish_dormant();
@@ -130,7 +119,7 @@ void MapOwner::look_for_join() {
     guard_.run("loops", [&] {
       const MapState& other = dormant_[i].state;
       LoopReport report;
-      auto join = loop_closer_.join(newest_, snapshot_, {other.map, other.places}, report, &spans_);
+      auto join = loop_closer_.join(newest_, snapshot_, {other.map, other.places()}, report, &spans_);
       tally(tallies_.joins, report, *other.map);
       if (join) join_ = FoundJoin{i, std::move(*join)};
     });
@@ -144,33 +133,16 @@ void MapOwner::join_maps() {
   drop_adjustment();
   const DormantMap other = dormant_[found.dormant];
   dormant_.erase(dormant_.begin() + static_cast<std::ptrdiff_t>(found.dormant));
-  const bool onto_other = found.join.onto_other;
-  const Map& younger = onto_other ? *snapshot_ : *other.state.map;
-  if (options_.builds_scene()) {
-    guard_.run("planes", [&] {
-      scene_.recall(*snapshot_);
-      scene_.recall(*other.state.map);
-      scene_.move(younger, found.join.older_from_younger);
-      for (const EditOperation& operation : found.join.edit.operations) {
-        if (const auto* merge = std::get_if<MergePlane>(&operation))
-          scene_.note_merge(merge->id, merge->into);
-      }
-    });
+  Followers absorbed = other.state.followers;
+  if (found.join.onto_other) {
+    absorbed = followers_;
+    work_on_map(*other.state.map, other.state.followers.copy());
   }
-  const std::shared_ptr<const FreeSpace> younger_space = onto_other ? free_space() : other.state.free_space;
-  if (onto_other) {
-    map_ = *other.state.map;
-    structure_.switch_to(other.state.free_space.get());
-  }
-  // The smaller index is read again into the larger one.
-  if (other.state.places->size() > places_.size()) places_ = *other.state.places;
   made_ += other.made;
   loaded_ |= other.loaded;
   ++counts_.merges;
   publish_dormant();
-  apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0});
-  if (options_.builds_structure() && younger_space)
-    guard_.run("rooms", [&] { structure_.absorb(map_, *younger_space); });
+  apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0}, &absorbed);
   adjust_from_here();
 }
 

@@ -49,7 +49,7 @@ class ReplayingExecutor : public Executor {
   void stop() override { stopped_ = true; }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
-  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
+  Followers followers() const override { return owner_.followers(); }
   std::int64_t backlog() const override { return static_cast<std::int64_t>(waiting_.size()); }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
@@ -91,6 +91,9 @@ class ReplayingExecutor : public Executor {
         require_run(owner_.mark(event.frame, *markers->second), departed(event));
         break;
       }
+      case EditEvent::Kind::roles:
+        owner_.interpret_planes();
+        break;
       case EditEvent::Kind::rooms:
       case EditEvent::Kind::rooms_last:
         owner_.find_rooms(event.kind == EditEvent::Kind::rooms_last);

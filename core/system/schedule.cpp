@@ -21,6 +21,7 @@ constexpr std::array<std::pair<const char*, EditEvent::Kind>, 13> kinds = {{
     {"labels", EditEvent::Kind::labels},
     {"markers", EditEvent::Kind::markers},
     {"rooms", EditEvent::Kind::rooms},
+    {"roles", EditEvent::Kind::roles},
     {"rooms_last", EditEvent::Kind::rooms_last},
     {"loop", EditEvent::Kind::loop},
     {"adjust", EditEvent::Kind::adjust},

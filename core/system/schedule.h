@@ -33,6 +33,7 @@ struct EditEvent {
     insert,
     planes,
     labels,
+    roles,
     markers,
     rooms,
     rooms_last,

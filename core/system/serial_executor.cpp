@@ -22,7 +22,7 @@ class SerialExecutor : public Executor {
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
-    if (options_.builds_scene()) owner_.label(frame_index, *labels);
+    if (options_.builds_scene() && owner_.label(frame_index, *labels)) owner_.interpret_planes();
   }
   void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) override {
     owner_.mark(frame_index, *detections);
@@ -33,7 +33,7 @@ class SerialExecutor : public Executor {
   }
   void stop() override { stopped_ = true; }
   SnapshotCell::Content content() const override { return cell_.take(); }
-  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
+  Followers followers() const override { return owner_.followers(); }
   std::int64_t backlog() const override { return 0; }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }

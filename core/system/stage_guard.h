@@ -30,7 +30,9 @@ class StageGuard {
   }
 
   bool is_off(const std::string& stage) const;
-  // One line per stage that is off; never null. Made anew when there is one more.
+  // Adds a line to the warnings, once.
+  void warn(const std::string& line);
+  // One line per stage that is off, and those of warn(); never null. Made anew when there is one more.
   const std::shared_ptr<const std::vector<std::string>>& warnings() const { return warnings_; }
 
  private:

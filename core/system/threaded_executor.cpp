@@ -65,7 +65,7 @@ class ThreadedExecutor : public Executor {
   }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
-  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
+  Followers followers() const override { return owner_.followers(); }
   std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
   double waited_s() const override { return waited_s_; }
   std::vector<const SpanRecorder*> spans() const override {
@@ -94,7 +94,7 @@ class ThreadedExecutor : public Executor {
     try {
       while (const auto work = requests_.pop()) {
         if (stopped_) break;
-        if (work->labels) owner_.label(work->frame, *work->labels);
+        if (work->labels && owner_.label(work->frame, *work->labels)) owner_.interpret_planes();
         if (work->markers) owner_.mark(work->frame, *work->markers);
         if (work->request) owner_.work_on(*work->request, [this] { return cut_short(); }, stopped);
         adjust_beside();

@@ -25,7 +25,7 @@ class TrackingLane {
     {
       const Span span(&spans_, "track");
       KnownMaps known{{content.snapshot, content.places}, {}};
-      for (const MapState& map : *content.dormant) known.dormant.push_back({map.map, map.places});
+      for (const MapState& map : *content.dormant) known.dormant.push_back({map.map, map.places()});
       result = tracker_.track(frame, known, static_cast<int>(requested_ - content.inserted), &spans_);
     }
     if (localise_only_) result.keyframe_request.reset();
