@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/scene/free_space_checks.h"
 
 namespace vsgraphs {
 
@@ -64,7 +63,7 @@ Wrong wrong_with(const MapState& state) {
     if (!std::all_of(places.begin(), places.end(), [&](KeyframeId id) { return living.contains(id); }))
       return "a place index of a keyframe that does not exist";
   }
-  return state.free_space ? wrong_with_free_space(*state.free_space, *state.map) : nullptr;
+  return state.free_space ? state.free_space->wrong_with(*state.map) : nullptr;
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ MapState load_map_state(const ArchiveReader& archive, const std::string& name) {
     state.places = std::move(places);
   }
   if (archive.has(name + "/free_space")) {
-    auto free_space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
-    archive.read(name + "/free_space", *free_space);
+    auto free_space = std::make_shared<SpaceKeeper>(FreeSpaceOptions{}, 0);
+    free_space->load(archive, name + "/free_space");
     state.free_space = std::move(free_space);
   }
   return state;
@@ -54,7 +54,7 @@ void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas) {
     const std::string name = prefix(number++);
     save_map(archive, name, *state.map);
     if (state.places) archive.add(name + "/places", *state.places);
-    if (state.free_space) archive.add(name + "/free_space", *state.free_space);
+    if (state.free_space) state.free_space->save(archive, name + "/free_space");
   }
 }
 

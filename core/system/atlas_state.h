@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/map/map.h"
-#include "core/scene/free_space.h"
+#include "core/scene/space_keeper.h"
 #include "core/vision/place_index.h"
 
 namespace vsgraphs {
@@ -15,7 +15,7 @@ namespace vsgraphs {
 struct MapState {
   Snapshot map;
   std::shared_ptr<const PlaceIndex> places;
-  std::shared_ptr<const FreeSpace> free_space;  // none where rooms are not sought
+  std::shared_ptr<const SpaceKeeper> free_space;  // none where rooms are not sought
 };
 
 // One saved file, by what is in it: the numbers say nothing but whether two are the same. Zeros: none.

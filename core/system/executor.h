@@ -33,7 +33,7 @@ class Executor {
   // The newest maps; any thread.
   virtual SnapshotCell::Content content() const = 0;
   // Of the map worked on, after finish().
-  virtual std::shared_ptr<const FreeSpace> free_space() const = 0;
+  virtual std::shared_ptr<const SpaceKeeper> free_space() const = 0;
   virtual std::int64_t backlog() const = 0;
   // Time the tracker spent waiting for the mapper, s.
   virtual double waited_s() const { return 0.0; }

@@ -19,7 +19,9 @@ MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cel
       snapshot_(map_.snapshot()),
       mapper_(config.mapper, camera, config.orb.pyramid(), config.factors),
       scene_(config.scene, camera),
+      structure_options_(config.structure),
       structure_(config.structure),
+      space_(config.structure.free_space, config.structure.max_reintegrations),
       loop_closer_(config.loop, camera, config.orb.pyramid(), static_cast<std::uint64_t>(config.system.seed)),
       place_options_(config.places),
       places_(config.places),
@@ -192,7 +194,11 @@ void MapOwner::find_rooms(bool last) {
   MapEdit edit;
   const bool found = guard_.run("rooms", [&] {
     const Span span(&scene_spans_, "find_structure");
-    edit = structure_.propose(snapshot_, newest_s_, last, &scene_spans_);
+    {
+      const Span carving(&scene_spans_, "carve_free_space");
+      space_.catch_up(*snapshot_, last);
+    }
+    edit = structure_.propose(snapshot_, space_, newest_s_, &scene_spans_);
   });
   if (!found) return;
   apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
@@ -204,10 +210,12 @@ void MapOwner::refine(const std::function<bool()>& stop) {
   apply(edit, {EditEvent::Kind::refine, newest_frame_, report.iterations, 0});
 }
 
-void MapOwner::apply(const MapEdit& edit, EditEvent event) {
+void MapOwner::apply(const MapEdit& edit, EditEvent event, const SpaceKeeper* absorbed) {
   const Span span(&spans_, "apply_edit");
+  const Snapshot before = snapshot_;
   map_.apply(edit);
   snapshot_ = map_.snapshot();
+  if (options_.builds_structure()) space_.follow(*before, edit, *snapshot_, absorbed);
   event.hash = edit.hash();
   edits_.push_back(event);
   publish();

@@ -78,7 +78,7 @@ class MapOwner {
   std::int64_t newest_frame() const { return newest_frame_; }  // that became a keyframe
   const std::vector<EditEvent>& edits() const { return edits_; }
   // Of the map worked on; a copy. Null where rooms are not sought.
-  std::shared_ptr<const FreeSpace> free_space() const;
+  std::shared_ptr<const SpaceKeeper> free_space() const;
   // One lane for mapping, one for scene understanding.
   std::vector<const SpanRecorder*> spans() const { return {&spans_, &scene_spans_}; }
 
@@ -98,7 +98,9 @@ class MapOwner {
     MapJoin join;
   };
 
-  void apply(const MapEdit& edit, EditEvent event);
+  void apply(const MapEdit& edit, EditEvent event, const SpaceKeeper* absorbed = nullptr);
+  // Goes on with what is known of the free space of another map; null: nothing.
+  void keep_space_of(const SpaceKeeper* known);
   void publish();
   void start_from(const AtlasState& known);
   void put_to_sleep();
@@ -116,7 +118,9 @@ class MapOwner {
   Snapshot snapshot_;
   LocalMapper mapper_;
   SceneBuilder scene_;
+  StructureBuilderOptions structure_options_;
   StructureBuilder structure_;
+  SpaceKeeper space_;
   LoopCloser loop_closer_;
   PlaceIndexOptions place_options_;
   PlaceIndex places_;

@@ -30,7 +30,7 @@ void MapOwner::start_from(const AtlasState& known) {
     map_.apply(OpenMap{unused, 0});
     places_ = *last.places;
     published_places_ = last.places;
-    structure_.switch_to(last.free_space.get());
+    keep_space_of(last.free_space.get());
     loaded_ = true;
     snapshot_ = map_.snapshot();
   }
@@ -43,8 +43,16 @@ void MapOwner::publish_dormant() {
   published_dormant_ = std::move(states);
 }
 
-std::shared_ptr<const FreeSpace> MapOwner::free_space() const {
-  return options_.builds_structure() ? std::make_shared<const FreeSpace>(structure_.free_space()) : nullptr;
+std::shared_ptr<const SpaceKeeper> MapOwner::free_space() const {
+  return options_.builds_structure() ? std::make_shared<const SpaceKeeper>(space_) : nullptr;
+}
+
+void MapOwner::keep_space_of(const SpaceKeeper* known) {
+  const FreeSpaceOptions& wanted = structure_options_.free_space;
+  structure_.switch_map();
+  space_ = known ? *known : SpaceKeeper(wanted, structure_options_.max_reintegrations);
+  space_.use(wanted, structure_options_.max_reintegrations);
+  if (!known) space_.gather(map_);
 }
 
 bool MapOwner::choose_map(const KeyframeRequest& request) {
@@ -100,7 +108,7 @@ void MapOwner::open_new_map(std::int64_t frame) {
   map_ = Map{};
   places_ = PlaceIndex(place_options_);
   published_places_.reset();
-  structure_.switch_to(nullptr);
+  keep_space_of(nullptr);
   made_ = 0;
   loaded_ = false;
   publish_dormant();
@@ -115,7 +123,7 @@ void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) 
   map_ = *woken.state.map;
   places_ = *woken.state.places;
   published_places_ = woken.state.places;
-  structure_.switch_to(woken.state.free_space.get());
+  keep_space_of(woken.state.free_space.get());
   made_ = woken.made;
   loaded_ = woken.loaded;
   publish_dormant();
@@ -157,10 +165,10 @@ void MapOwner::join_maps() {
       }
     });
   }
-  const std::shared_ptr<const FreeSpace> younger_space = onto_other ? free_space() : other.state.free_space;
+  const std::shared_ptr<const SpaceKeeper> younger_space = onto_other ? free_space() : other.state.free_space;
   if (onto_other) {
     map_ = *other.state.map;
-    structure_.switch_to(other.state.free_space.get());
+    keep_space_of(other.state.free_space.get());
   }
   // The smaller index is read again into the larger one.
   if (other.state.places->size() > places_.size()) places_ = *other.state.places;
@@ -168,9 +176,7 @@ void MapOwner::join_maps() {
   loaded_ |= other.loaded;
   ++counts_.merges;
   publish_dormant();
-  apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0});
-  if (options_.builds_structure() && younger_space)
-    guard_.run("rooms", [&] { structure_.absorb(map_, *younger_space); });
+  apply(found.join.edit, {EditEvent::Kind::join, newest_frame_, 0, 0}, younger_space.get());
   adjust_from_here();
 }
 

@@ -33,7 +33,7 @@ class SerialExecutor : public Executor {
   }
   void stop() override { stopped_ = true; }
   SnapshotCell::Content content() const override { return cell_.take(); }
-  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
+  std::shared_ptr<const SpaceKeeper> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return 0; }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }

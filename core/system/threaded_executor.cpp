@@ -65,7 +65,7 @@ class ThreadedExecutor : public Executor {
   }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
-  std::shared_ptr<const FreeSpace> free_space() const override { return owner_.free_space(); }
+  std::shared_ptr<const SpaceKeeper> free_space() const override { return owner_.free_space(); }
   std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
   double waited_s() const override { return waited_s_; }
   std::vector<const SpanRecorder*> spans() const override {
