@@ -124,8 +124,7 @@ void measure(const Crossings& counts, const WallOpening& opening, const DoorOpti
 }  // namespace
 
 std::vector<FoundDoor> find_doors(const LevelMap& map, const Clusters& clusters, const RoomsOfLevel& rooms,
-                                  const std::map<KeyframeId, FreeSpace::View>& views,
-                                  const DoorOptions& options) {
+                                  std::span<const FreeSpace::View> views, const DoorOptions& options) {
   std::vector<FoundDoor> doors;
   const auto room_of = [&](int cluster) {
     return cluster < 0 ? -1 : rooms.room_of_cluster[static_cast<std::size_t>(cluster)];
@@ -142,8 +141,8 @@ std::vector<FoundDoor> find_doors(const LevelMap& map, const Clusters& clusters,
                   rooms.rooms[static_cast<std::size_t>(before)].number};
     DoorRays rays(o.opening, map.ground_m, options);
     std::vector<const FreeSpace::View*> facing;
-    for (const auto& [keyframe, view] : views)
-      if (rays.faced_by(view, options.range_m)) facing.push_back(&view);
+    for (const FreeSpace::View& view : views)
+      if (view.depth && rays.faced_by(view, options.range_m)) facing.push_back(&view);
     // Spread over all of them, so that many do not cost more.
     const std::size_t used = std::min(facing.size(), static_cast<std::size_t>(options.max_keyframes));
     for (std::size_t i = 0; i < used; ++i) rays.add(*facing[i * facing.size() / used]);

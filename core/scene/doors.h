@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,7 +31,6 @@ void describe(DoorOptions& o, Visitor& field) {
 
 // Doors between two different rooms. Costs about 0.1 ms per door and keyframe that measures it.
 std::vector<FoundDoor> find_doors(const LevelMap& map, const Clusters& clusters, const RoomsOfLevel& rooms,
-                                  const std::map<KeyframeId, FreeSpace::View>& views,
-                                  const DoorOptions& options);
+                                  std::span<const FreeSpace::View> views, const DoorOptions& options);
 
 }  // namespace vsgraphs

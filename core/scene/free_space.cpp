@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/check.h"
+
 namespace vsgraphs {
 namespace {
 
@@ -104,6 +106,12 @@ std::vector<RayBundle> bundles_of(const FreeSpace::View& view, const FreeSpaceOp
 
 }  // namespace
 
+double off_by(const Se3& as_carved, const Se3& now, const FreeSpaceOptions& options) {
+  const Se3 change = as_carved.inverse() * now;
+  const double turned_deg = rotation_angle(change.rotation()) * 180 / std::numbers::pi;
+  return std::max(change.translation().norm() / options.moved_m, turned_deg / options.turned_deg);
+}
+
 FreeSpace::FreeSpace(const FreeSpaceOptions& options) : options_(options) {}
 
 bool FreeSpace::integrate(KeyframeId keyframe, std::shared_ptr<const DepthGrid> depth,
@@ -114,6 +122,7 @@ bool FreeSpace::integrate(KeyframeId keyframe, std::shared_ptr<const DepthGrid> 
   if (full()) voxels_.drop_empty();
   if (full()) return false;
   remove(keyframe);
+  if (views_.contains(keyframe)) return true;
   const View& view = views_[keyframe] = {std::move(depth), level_from_camera};
   carve(view, 1);
   return true;
@@ -121,7 +130,7 @@ bool FreeSpace::integrate(KeyframeId keyframe, std::shared_ptr<const DepthGrid> 
 
 void FreeSpace::remove(KeyframeId keyframe) {
   const auto it = views_.find(keyframe);
-  if (it == views_.end()) return;
+  if (it == views_.end() || !it->second.depth) return;
   carve(it->second, -1);
   views_.erase(it);
 }
@@ -130,11 +139,8 @@ int FreeSpace::refresh(std::span<const KeyframePose> poses, int max_reintegratio
   std::vector<std::pair<double, const KeyframePose*>> moved;
   for (const KeyframePose& pose : poses) {
     const auto it = views_.find(pose.keyframe);
-    if (it == views_.end()) continue;
-    const Se3 change = it->second.level_from_camera.inverse() * pose.level_from_camera;
-    const double turned_deg = rotation_angle(change.rotation()) * 180 / std::numbers::pi;
-    const double by =
-        std::max(change.translation().norm() / options_.moved_m, turned_deg / options_.turned_deg);
+    if (it == views_.end() || !it->second.depth) continue;
+    const double by = off_by(it->second.level_from_camera, pose.level_from_camera, options_);
     if (by > 1) moved.emplace_back(by, &pose);
   }
   std::sort(moved.begin(), moved.end(), [](const auto& a, const auto& b) {
@@ -148,6 +154,18 @@ int FreeSpace::refresh(std::span<const KeyframePose> poses, int max_reintegratio
     carve(view, 1);
   }
   return static_cast<int>(moved.size() - count);
+}
+
+void FreeSpace::freeze(KeyframeId keyframe) {
+  const auto it = views_.find(keyframe);
+  if (it != views_.end()) it->second.depth.reset();
+}
+
+void FreeSpace::drop_empty() { voxels_.drop_empty(); }
+
+void FreeSpace::use(const FreeSpaceOptions& options) {
+  VSG_INVARIANT(options.voxel_m == options_.voxel_m && options.range_m == options_.range_m);
+  options_ = options;
 }
 
 void FreeSpace::carve(const View& view, int sign) {

@@ -24,7 +24,7 @@ namespace vsgraphs {
 struct FreeSpaceOptions {
   double voxel_m = 0.1;
   double range_m = 4.0;
-  int max_blocks = 20000;
+  int max_blocks = 60000;
   double moved_m = 0.03;
   double turned_deg = 0.5;
 };
@@ -39,7 +39,8 @@ void describe(FreeSpaceOptions& o, Visitor& field) {
   field("voxel_m", o.voxel_m, 0.05, 0.2, "edge of a voxel");
   field("range_m", o.range_m, 1.0, 10.0, "rays are followed this far");
   field("max_blocks", o.max_blocks, 100, 1000000,
-        "blocks of 8 x 8 x 8 voxels (4 kB each) after which no further keyframe is taken in");
+        "blocks of 8 x 8 x 8 voxels, at most 8 kB each, after which rooms are sought without further "
+        "keyframes");
   field("moved_m", o.moved_m, 0.001, 1.0, "a keyframe corrected by more than this is carved again");
   field("turned_deg", o.turned_deg, 0.01, 20.0, "a keyframe turned by more than this is carved again");
 }
@@ -48,6 +49,9 @@ struct KeyframePose {
   KeyframeId keyframe;
   Se3 level_from_camera;
 };
+
+// How far a camera stands from where it was carved; beyond 1 it is carved again.
+double off_by(const Se3& as_carved, const Se3& now, const FreeSpaceOptions& options);
 
 // Rays of one keyframe that end in one voxel.
 struct RayBundle {
@@ -60,14 +64,14 @@ struct RayBundle {
 class FreeSpace {
  public:
   struct View {
-    std::shared_ptr<const DepthGrid> depth;
-    Se3 level_from_camera;  // as it was carved
+    std::shared_ptr<const DepthGrid> depth;  // null: frozen
+    Se3 level_from_camera;                   // as it was carved
 
     template <FieldsOf<View> T>
     friend void visit_fields(T& v, auto& field) {
       field(v.depth, v.level_from_camera);
       if constexpr (std::remove_reference_t<decltype(field)>::reads)
-        field.require(v.depth && v.level_from_camera.finite(), "a view of nothing");
+        field.require(v.level_from_camera.finite(), "a view from nowhere");
     }
   };
 
@@ -82,6 +86,12 @@ class FreeSpace {
   // Carves those keyframes again that have moved the most (by the options' measures), at most
   // `max_reintegrations` of them; those without a pose stay where they are. Returns how many still wait.
   int refresh(std::span<const KeyframePose> poses, int max_reintegrations);
+  // Lets go of a keyframe's depth: what it carved stays as it is for good, whatever is asked above.
+  void freeze(KeyframeId keyframe);
+  // Gives the memory of blocks back in which nothing is left.
+  void drop_empty();
+  // From now on; voxel_m and range_m must be those it has.
+  void use(const FreeSpaceOptions& options);
 
   const VoxelBlocks& voxels() const { return voxels_; }
   const std::map<KeyframeId, View>& views() const { return views_; }

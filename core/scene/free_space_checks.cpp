@@ -1,6 +1,5 @@
 #include "core/scene/free_space_checks.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/geometry/bounds.h"
@@ -40,24 +39,27 @@ Corners reach_of(const FreeSpace& space) {
   return {reach.first - far, reach.second + far};
 }
 
-bool is_empty(const VoxelBlocks::Block& block) {
-  return std::all_of(block.voxels.begin(), block.voxels.end(), [](const Voxel& v) { return v.empty(); });
-}
-
 // Nothing was ever seen so far off; what a view has left behind when it was moved is empty.
 bool out_of_reach(const VoxelBlocks::Block& block, const Corners& reach) {
   const Eigen::Array3d low = block.origin.cast<double>(), high = low + VoxelBlocks::edge;
   const bool outside = (high < reach.first).any() || (low > reach.second).any();
-  return outside && (!within(block.origin.cast<double>(), 2 * most_metres / 0.05) || !is_empty(block));
+  return outside && (!within(block.origin.cast<double>(), 2 * most_metres / 0.05) || !block.empty());
 }
 
 }  // namespace
 
 Wrong wrong_with_free_space(const FreeSpace& space, const Map& map) {
-  if (!in_range(space.options())) return "free space of no resolution";
   for (const auto& [id, view] : space.views()) {
     if (!map.retired_keyframes().contains(id)) return "free space seen by a keyframe that does not exist";
-    if (!is_pose(view.level_from_camera) || !is_sane(*view.depth)) return "free space seen from nowhere";
+  }
+  return wrong_with_free_space(space);
+}
+
+Wrong wrong_with_free_space(const FreeSpace& space) {
+  if (!in_range(space.options())) return "free space of no resolution";
+  for (const auto& [id, view] : space.views()) {
+    if (!is_pose(view.level_from_camera) || (view.depth && !is_sane(*view.depth)))
+      return "free space seen from nowhere";
   }
   const Corners reach = reach_of(space);
   for (const VoxelBlocks::Block& block : space.voxels().blocks()) {

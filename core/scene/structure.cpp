@@ -16,24 +16,23 @@ struct Storey {
 };
 
 // Cameras held above this ground and below the next one.
-std::vector<Eigen::Vector2d> cameras_above(const FreeSpace& free_space, double ground_m) {
+std::vector<Eigen::Vector2d> cameras_above(const SpaceView& space, double ground_m) {
   constexpr double lowest_m = 0.2, highest_m = 2.2;
   std::vector<Eigen::Vector2d> cameras;
-  for (const auto& [keyframe, view] : free_space.views()) {
+  for (const FreeSpace::View& view : space.views) {
     const Eigen::Vector3d& at = view.level_from_camera.translation();
     if (at.z() > ground_m + lowest_m && at.z() < ground_m + highest_m) cameras.push_back(at.head<2>());
   }
   return cameras;
 }
 
-Storey look_at_storey(const FreeSpace& free_space, double ground_m, const SceneFaces& faces,
+Storey look_at_storey(const SpaceView& space, double ground_m, const SceneFaces& faces,
                       const StructureOptions& options) {
   Storey storey;
-  storey.map = build_level_map(free_space.voxels(), free_space.options().voxel_m, ground_m, faces.walls,
-                               options.level);
+  storey.map = build_level_map(space.voxels, space.voxel_m, ground_m, faces.walls, options.level);
   const std::vector<WallLine> walls = wall_lines(faces.walls, ground_m, options.level);
   storey.clusters =
-      find_clusters(storey.map, walls, cameras_above(free_space, ground_m), options.cluster, options.opening);
+      find_clusters(storey.map, walls, cameras_above(space, ground_m), options.cluster, options.opening);
   storey.rooms = find_rooms(storey.map, storey.clusters, walls, faces, options.room, options.outline);
   return storey;
 }
@@ -70,18 +69,17 @@ void add_places(const Storey& storey, const PlaceOptions& options, std::vector<P
 
 }  // namespace
 
-FoundStructure recognise_structure(const FreeSpace& free_space, const SceneFaces& faces,
+FoundStructure recognise_structure(const SpaceView& space, const SceneFaces& faces,
                                    const FoundStructure& previous, const StructureOptions& options) {
   std::vector<Storey> storeys;
   for (const double ground_m : level_heights(faces.grounds, options.level))
-    storeys.push_back(look_at_storey(free_space, ground_m, faces, options));
+    storeys.push_back(look_at_storey(space, ground_m, faces, options));
   FoundStructure found;
   found.next_number = previous.next_number;
   number_all(storeys, previous, found.next_number);
   for (const Storey& storey : storeys) {
     found.rooms.insert(found.rooms.end(), storey.rooms.rooms.begin(), storey.rooms.rooms.end());
-    const auto doors =
-        find_doors(storey.map, storey.clusters, storey.rooms, free_space.views(), options.door);
+    const auto doors = find_doors(storey.map, storey.clusters, storey.rooms, space.views, options.door);
     found.doors.insert(found.doors.end(), doors.begin(), doors.end());
     add_places(storey, options.place, found.places);
   }

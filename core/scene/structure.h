@@ -9,12 +9,12 @@
 #include "core/scene/clusters.h"
 #include "core/scene/doors.h"
 #include "core/scene/floors.h"
-#include "core/scene/free_space.h"
 #include "core/scene/level_map.h"
 #include "core/scene/openings.h"
 #include "core/scene/places.h"
 #include "core/scene/room_outline.h"
 #include "core/scene/rooms.h"
+#include "core/scene/space_view.h"
 #include "core/scene/surfaces.h"
 
 namespace vsgraphs {
@@ -32,7 +32,7 @@ struct StructureOptions {
 
 // One pass over everything known, all in one levelled frame. `previous`: what the last pass found (its rooms keep their
 // numbers). Nothing is found before there is a ground. Pure: the same input gives the same output.
-FoundStructure recognise_structure(const FreeSpace& free_space, const SceneFaces& faces,
+FoundStructure recognise_structure(const SpaceView& space, const SceneFaces& faces,
                                    const FoundStructure& previous, const StructureOptions& options);
 
 }  // namespace vsgraphs

@@ -92,4 +92,9 @@ std::optional<Eigen::Vector3d> find_up(std::vector<UprightEvidence> surfaces, co
   return best;
 }
 
+Se3 levelling(const Eigen::Vector3d& up_in_world) {
+  return {Eigen::Quaterniond::FromTwoVectors(up_in_world, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+          Eigen::Vector3d::Zero()};
+}
+
 }  // namespace vsgraphs

@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/se3.h"
+
 namespace vsgraphs {
 
 struct UprightEvidence {
@@ -26,5 +28,8 @@ struct UpDirectionOptions {
 // cameras' own up. O(n^3) in the surfaces, of which the largest 24 are used.
 std::optional<Eigen::Vector3d> find_up(std::vector<UprightEvidence> surfaces, const Eigen::Vector3d& image_up,
                                        const UpDirectionOptions& options = {});
+
+// Turns `up` to z, about the world's origin.
+Se3 levelling(const Eigen::Vector3d& up_in_world);
 
 }  // namespace vsgraphs

@@ -22,6 +22,10 @@ std::uint64_t hash(const Eigen::Vector3i& origin) {
 
 }  // namespace
 
+bool VoxelBlocks::Block::empty() const {
+  return std::all_of(voxels.begin(), voxels.end(), [](const Voxel& v) { return v.empty(); });
+}
+
 VoxelBlocks::VoxelBlocks() : slots_(first_slots, -1) {}
 
 std::size_t VoxelBlocks::slot_of(const Eigen::Vector3i& origin) const {
@@ -80,10 +84,8 @@ std::size_t VoxelBlocks::memory_bytes() const {
 }
 
 void VoxelBlocks::drop_empty() {
-  std::erase_if(blocks_, [](const Block& block) {
-    return std::all_of(block.voxels.begin(), block.voxels.end(), [](const Voxel& v) { return v.empty(); });
-  });
-  rehash(slots_.size());
+  if (std::erase_if(blocks_, [](const Block& block) { return block.empty(); }) > 0)
+    rehash(slots_.size());
 }
 
 }  // namespace vsgraphs

@@ -38,6 +38,7 @@ class VoxelBlocks {
     static std::size_t index(int x, int y, int z) {
       return static_cast<std::size_t>((z * edge + y) * edge + x);
     }
+    bool empty() const;
     template <FieldsOf<Block> T>
     friend void visit_fields(T& v, auto& field) {
       field(v.origin, v.voxels);

@@ -1,17 +1,11 @@
 #include "core/stages/structure_builder.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
+#include "core/scene/up_direction.h"
 
 namespace vsgraphs {
 namespace {
-
-Se3 levelling(const Eigen::Vector3d& up) {
-  return {Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-          Eigen::Vector3d::Zero()};
-}
 
 // One point for each cell in which the plane was seen.
 std::vector<Eigen::Vector3f> seen_points(const MappedPlane& plane, const KnownSurface* known,
@@ -62,57 +56,16 @@ void place_nodes(const Map& map, const SurfaceKeeper& surfaces, FoundStructure& 
 
 }  // namespace
 
-void StructureBuilder::carve(const Map& map, const Se3& level_from_world, bool last) {
-  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    if (keyframe.surface && !free_space_.views().contains(id))
-      free_space_.integrate(id, keyframe.surface, level_from_world * keyframe.world_from_camera);
-  });
-  // Keyframes that went because others see the same take what they had carved along.
-  std::vector<KeyframeId> forgotten;
-  for (const auto& [id, view] : free_space_.views()) {
-    const RetiredKeyframe* retired = map.retired_keyframes().find(id);
-    if (retired && retired->replaced) forgotten.push_back(id);
-  }
-  for (const KeyframeId id : forgotten) free_space_.remove(id);
-  std::vector<KeyframePose> poses;
-  for (const auto& [id, view] : free_space_.views()) {
-    if (const auto pose = map.resolve({id, Se3{}})) poses.push_back({id, level_from_world * *pose});
-  }
-  free_space_.refresh(poses, last ? std::numeric_limits<int>::max() : options_.max_reintegrations);
-}
-
-void StructureBuilder::switch_to(const FreeSpace* free_space) {
-  last_pass_s_.reset();
-  const FreeSpaceOptions& wanted = options_.free_space;
-  const bool usable = free_space && free_space->options().voxel_m == wanted.voxel_m &&
-                      free_space->options().range_m == wanted.range_m;
-  free_space_ = usable ? *free_space : FreeSpace(wanted);
-}
-
-void StructureBuilder::absorb(const Map& map, const FreeSpace& free_space) {
-  if (!map.up_in_world()) return;
-  const Se3 level_from_world = levelling(*map.up_in_world());
-  for (const auto& [id, view] : free_space.views()) {
-    const auto pose = map.resolve({id, Se3{}});
-    if (pose && !free_space_.views().contains(id))
-      free_space_.integrate(id, view.depth, level_from_world * *pose);
-  }
-}
-
-MapEdit StructureBuilder::propose(const Snapshot& snapshot, const SurfaceKeeper& surfaces, double timestamp_s,
-                                  bool last, TraceSink* trace) {
+MapEdit StructureBuilder::propose(const Snapshot& snapshot, const SpaceKeeper& space,
+                                  const SurfaceKeeper& surfaces, double timestamp_s, TraceSink* trace) {
   last_pass_s_ = timestamp_s;
   Draft draft(snapshot);
   const Map& map = draft.map();
   if (!map.up_in_world()) return draft.take();
   const Se3 level_from_world = levelling(*map.up_in_world());
-  {
-    const Span span(trace, "carve_free_space");
-    carve(map, level_from_world, last);
-  }
   const Span span(trace, "find_rooms");
-  auto found = std::make_shared<FoundStructure>(
-      recognise_structure(free_space_, faces_of(map, surfaces, level_from_world), map.structure(), options_.structure));
+  auto found = std::make_shared<FoundStructure>(recognise_structure(
+      space.view(), faces_of(map, surfaces, level_from_world), map.structure(), options_.structure));
   found->sought = true;
   found->level_from_world = level_from_world;
   place_nodes(map, surfaces, *found);

@@ -1,10 +1,11 @@
-// Structural elements: keeps the free space that keyframes have looked through, and every few seconds of data time finds
-// rooms, floors, doors and places in it and in the classified planes. Proposes; the next window turns proposals into
+// Structural elements: every few seconds of data time finds rooms, floors, doors and places in the free space that keyframes
+// have looked through and in the classified planes. Proposes; the next window turns proposals into
 // factors. After vS-Graphs, "Structural Element Recognition".
 #pragma once
 
 #include "core/base/trace.h"
 #include "core/map/draft.h"
+#include "core/scene/space_keeper.h"
 #include "core/scene/structure.h"
 #include "core/scene/surface_keeper.h"
 
@@ -26,31 +27,19 @@ void describe(StructureBuilderOptions& o, Visitor& field) {
 
 class StructureBuilder {
  public:
-  explicit StructureBuilder(const StructureBuilderOptions& options)
-      : options_(options), free_space_(options.free_space) {}
+  explicit StructureBuilder(const StructureBuilderOptions& options) : options_(options) {}
 
   bool due(double timestamp_s) const {
     return !last_pass_s_ || timestamp_s >= *last_pass_s_ + options_.interval_s;
   }
-  // One pass. `last`: nothing comes after it, so everything that was corrected is carved anew.
-  MapEdit propose(const Snapshot& snapshot, const SurfaceKeeper& surfaces, double timestamp_s, bool last,
-                  TraceSink* trace);
-
-  // The free space so far.
-  const FreeSpace& free_space() const { return free_space_; }
-  // Goes on with another map: with a copy of what was carved of it, or (null, or carved at another resolution) from its
-  // keyframes' depth at the next pass.
-  void switch_to(const FreeSpace* free_space);
-  // `map` has taken in another one: carves what was carved there, retired keyframes included, where they stand now.
-  void absorb(const Map& map, const FreeSpace& free_space);
-
-  std::size_t free_space_bytes() const { return free_space_.memory_bytes(); }
+  // One pass over the free space and the surfaces as it has been kept up to now.
+  MapEdit propose(const Snapshot& snapshot, const SpaceKeeper& space, const SurfaceKeeper& surfaces,
+                  double timestamp_s, TraceSink* trace);
+  // Another map is worked on: a pass is due.
+  void switch_map() { last_pass_s_.reset(); }
 
  private:
-  void carve(const Map& map, const Se3& level_from_world, bool last);
-
   StructureBuilderOptions options_;
-  FreeSpace free_space_;
   std::optional<double> last_pass_s_;
 };
 

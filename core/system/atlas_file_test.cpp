@@ -9,9 +9,19 @@
 #include "core/base/test_archive.h"
 #include "core/map/test_depth_row.h"
 #include "core/map/test_map.h"
+#include "core/scene/space_keeper.h"
+#include "core/system/followers.h"
 
 namespace vsgraphs {
 namespace {
+
+MapState gathered(Map& map) {
+  map.apply(SetUp{-Eigen::Vector3d::UnitY()});
+  const Followers followers = make_followers(Config{}, Camera{});
+  followers.start(map, {});
+  Followers(followers).catch_up(map, true, [](const char*, const auto& work) { return work(), true; });
+  return {map.snapshot(), followers};
+}
 
 // Two keyframes with landmarks and depth; `first_name` sets how the points look, so that two maps differ, and `first` where
 // ids begin.
@@ -21,28 +31,24 @@ MapState some_map(int first_name, const FirstIds& first) {
   const Camera camera;
   const auto points = test::point_grid(8, 6);
   std::vector<KeyframeId> keyframes;
-  auto places = std::make_shared<PlaceIndex>();
-  auto space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
   for (int i = 0; i < 3; ++i) {
     Keyframe keyframe = test::keyframe_seeing(camera, test::standing_at(0.2 * i), points, first_name);
     keyframe.surface = test::depth_row();
     keyframes.push_back(test::add_keyframe(map, keyframe));
-    places->add(keyframes.back(), *keyframe.features);
-    space->integrate(keyframes.back(), keyframe.surface, keyframe.world_from_camera);
   }
   test::add_landmarks(map, points, keyframes);
   map.apply(RemoveKeyframe{keyframes[1], keyframes[0]});
-  places->remove(keyframes[1]);
   map.apply(AddMarker{{7}, {0.2, Se3{}, {}}});
   map.apply(AddMarkerObservation{{7}, {keyframes[0], Se3{}, Matrix6d::Identity()}});
   map.apply(MapEdit{});
-  return {map.snapshot(), std::move(places), std::move(space)};
+  return gathered(map);
 }
 
 SavedAtlas some_atlas() {
   SavedAtlas atlas;
   atlas.state.maps = {some_map(0, {}), some_map(100, {64, 64, 64})};
-  atlas.state.maps[0].free_space = nullptr;  // as a map has it on which nothing goes on
+  // As a map of a run that only locates the camera.
+  atlas.state.maps[0].followers = Followers({std::make_shared<PlaceKeeper>(atlas.state.maps[0].places())});
   atlas.camera.distortion = {0.1, -0.2, 0.001, 0.002, 0};
   atlas.configuration = configuration_text(Config{});
   atlas.program = "1.2.3";
@@ -74,13 +80,15 @@ TEST(AtlasFile, SavingWhatWasLoadedGivesTheSameBytes) {
   std::filesystem::remove(path);
   EXPECT_EQ(bytes_of(back), bytes_of(atlas));
   ASSERT_EQ(back.state.maps.size(), 2U);
-  EXPECT_EQ(back.state.maps[0].free_space, nullptr);
-  EXPECT_EQ(back.state.maps[1].free_space->views().size(), 3U);
-  EXPECT_EQ(back.state.maps[1].places->size(), 2);
+  EXPECT_EQ(back.state.maps[0].followers.find<SpaceKeeper>(), nullptr);
+  EXPECT_EQ(back.state.maps[1].followers.all().size(), 3U);
+  const SpaceKeeper& space = *back.state.maps[1].followers.find<SpaceKeeper>();
+  EXPECT_EQ(space.view().views.size(), 2U);
+  EXPECT_EQ(back.state.maps[1].places()->size(), 2);
   // What a keyframe and the free space share is one object again.
   const Map& map = *back.state.maps[1].map;
   const KeyframeId first = map.keyframes().at_index(64);
-  EXPECT_EQ(map.keyframes().find(first)->surface, back.state.maps[1].free_space->views().at(first).depth);
+  EXPECT_EQ(map.keyframes().find(first)->surface, space.view().views.front().depth);
   EXPECT_EQ(back.map_names, atlas.map_names);
   EXPECT_EQ(back.program, "1.2.3");
   EXPECT_EQ(back.camera.distortion, atlas.camera.distortion);
@@ -190,7 +198,7 @@ TEST(AtlasFile, WhatCouldNotBeLoadedAgainReplacesNothing) {
 TEST(AtlasFile, MapsWithoutKeyframesAndNoMapsAreAtlasesToo) {
   SavedAtlas atlas;
   EXPECT_TRUE(is_empty(read_atlas("FILE", bytes_of(atlas)).state));
-  atlas.state.maps.push_back({std::make_shared<const Map>(), nullptr, nullptr});
+  atlas.state.maps.push_back({std::make_shared<const Map>(), {}});
   const SavedAtlas back = read_atlas("FILE", bytes_of(atlas));
   EXPECT_EQ(back.state.maps.size(), 1U);
   EXPECT_TRUE(is_empty(back.state));
@@ -246,13 +254,13 @@ TEST(AtlasFile, MapsHaveIdsOfTheirOwn) {
   atlas.map_names.clear();
   Map ahead = *atlas.state.maps[0].map;
   ahead.apply(OpenMap{{64, 1U << 25, 64}, 0});
-  atlas.state.maps = {{ahead.snapshot(), nullptr, nullptr}};
+  atlas.state.maps = {{ahead.snapshot(), {}}};
   EXPECT_THAT(error_of(atlas), testing::HasSubstr("damaged"));
 }
 
 TEST(AtlasFile, ThePlaceIndexIsOfLivingKeyframes) {
   SavedAtlas atlas = some_atlas();
-  atlas.state.maps[0].places = atlas.state.maps[1].places;
+  atlas.state.maps[0].followers = Followers({std::make_shared<PlaceKeeper>(atlas.state.maps[1].places())});
   EXPECT_THAT(error_of(atlas), testing::HasSubstr("a place index of a keyframe that does not exist"));
 }
 

@@ -11,6 +11,7 @@
 #include "core/base/rng.h"
 #include "core/base/test_archive.h"
 #include "core/system/atlas_file.h"
+#include "core/system/followers.h"
 #include "core/system/slam.h"
 #include "core/system/test_wall_scene.h"
 
@@ -57,17 +58,15 @@ MapState furnished(const MapState& state) {
   map.planes().for_each([&](PlaneId id, const MappedPlane&) { wall = id; });
   map.apply(ClassifyPlane{wall, SurfaceRole::wall, {}});
   map.apply(SetStructure{std::make_shared<const FoundStructure>(some_structure(wall))});
-  auto space = std::make_shared<FreeSpace>(FreeSpaceOptions{});
-  const Se3 level_from_world{
-      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-      Eigen::Vector3d::Zero()};
-  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    space->integrate(id, keyframe.surface, level_from_world * keyframe.world_from_camera);
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe&) {
     map.apply(AddMarker{{7}, {0.2, Se3{}, {}}});
     map.apply(
         AddMarkerObservation{{7}, {id, {Eigen::Matrix3d::Identity(), {0, 0, wall_m}}, Matrix6d::Identity()}});
   });
-  return {map.snapshot(), state.places, std::move(space)};
+  Followers followers = make_followers(Config{}, small_camera());
+  followers.start(map, {});
+  followers.catch_up(map, true, [](const char*, const auto& work) { return work(), true; });
+  return {map.snapshot(), followers};
 }
 
 // Two maps: a walk along the wall, and one along another piece of it after a while in the dark.
@@ -158,7 +157,7 @@ class AtlasMutations : public testing::Test {
     map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
       map.covisible(id, 1);
       map.room_at(keyframe.world_from_camera.translation());
-      if (state.places) state.places->query(*keyframe.features, 5);
+      if (state.places()) state.places()->query(*keyframe.features, 5);
     });
     map.planes().for_each([&](PlaneId, const MappedPlane& plane) { map.observed_centre(plane); });
     for (const auto& [id, marker] : map.markers()) map.sightings(*marker);

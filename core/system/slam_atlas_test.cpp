@@ -106,7 +106,7 @@ TEST(Atlas, WithoutAWayBackTheMapMostWasMadeOfIsGivenOut) {
   const AtlasState after = walk.slam().atlas_state();
   ASSERT_EQ(after.maps.size(), 2U);
   EXPECT_EQ(after.maps.back().map, walk.slam().snapshot()) << "the map worked on comes last";
-  EXPECT_NE(after.maps.back().free_space, nullptr);
+  EXPECT_EQ(after.maps.back().followers.all().size(), 3U);
   after.maps[0].map->keyframes().for_each(
       [&](KeyframeId id, const Keyframe&) { EXPECT_FALSE(after.maps[1].map->keyframes().contains(id)); });
   after.maps[0].map->landmarks().for_each(
@@ -170,7 +170,7 @@ TEST(Atlas, AThreadedRunWithANewMapAndAJoinReplaysExactly) {
           for (const Observation& seen : landmark.observations)
             if (!state.map->keyframes().contains(seen.keyframe)) consistent = false;
         });
-        for (const KeyframeId id : state.places->keyframes())
+        for (const KeyframeId id : state.places()->keyframes())
           if (!state.map->keyframes().contains(id)) consistent = false;
       }
     }
@@ -231,14 +231,13 @@ TEST(Atlas, ASecondSessionThatStartsElsewhereIsJoinedInTheFirstOnesWorld) {
 
 TEST(Atlas, AnEmptyAtlasIsLikeNone) {
   Map empty;
-  Walk walk(configured("serial"), AtlasState{{{empty.snapshot(), nullptr, nullptr}}, {}});
+  Walk walk(configured("serial"), AtlasState{{{empty.snapshot(), {}}}, {}});
   EXPECT_EQ(walk.see(0), TrackStatus::initialised);
 }
 
 TEST(Atlas, AnIndexThatIsMissingIsMadeAnew) {
   AtlasState known = first_session();
-  known.maps[0].places = nullptr;
-  known.maps[0].free_space = nullptr;
+  known.maps[0].followers = {};
   Walk walk(configured("serial"), known);
   EXPECT_EQ(walk.see(200), TrackStatus::relocalised);
 }
@@ -273,7 +272,7 @@ TEST(LocaliseOnly, NeedsAMap) {
   config.set("system.localise_only", true);
   EXPECT_THROW(Slam(config, small_camera()), InputError);
   Map empty;
-  EXPECT_THROW(Slam(config, small_camera(), AtlasState{{{empty.snapshot(), nullptr, nullptr}}, {}}),
+  EXPECT_THROW(Slam(config, small_camera(), AtlasState{{{empty.snapshot(), {}}}, {}}),
                InputError);
 }
 
