@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -58,6 +59,8 @@ struct MoveKeyframe {
 struct MoveLandmark {
   LandmarkId id;
   Eigen::Vector3d point_in_world;
+  // Where the landmark turns with what it hangs on; without, it is looked for from where it was.
+  std::optional<Eigen::Vector3f> view_direction = std::nullopt;
 };
 struct SetAppearance {
   LandmarkId id;

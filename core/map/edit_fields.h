@@ -48,8 +48,8 @@ void visit_fields(T& v, auto& field) {
 }
 template <FieldsOf<MoveLandmark> T>
 void visit_fields(T& v, auto& field) {
-  auto& [id, point_in_world] = v;
-  field(id, point_in_world);
+  auto& [id, point_in_world, view_direction] = v;
+  field(id, point_in_world, view_direction);
 }
 template <FieldsOf<SetAppearance> T>
 void visit_fields(T& v, auto& field) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/map/carry.h"
 #include "core/map/draft.h"
 #include "core/map/map.h"
 #include "core/solve/bundle_adjustment.h"
@@ -43,6 +44,9 @@ struct WindowProblem {
 
 // Per keyframe index, the keyframe's pose in the problem; -1 where it has none.
 std::vector<int> pose_positions(const Map& map, const WindowProblem& problem);
+
+// What the solution moves each keyframe by; identity for those that are fixed or outside. `map` has the poses of before.
+Corrections corrections_of(const Map& map, const WindowProblem& problem);
 
 // Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground, rooms and floors,
 // markers.
