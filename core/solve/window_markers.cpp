@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "core/geometry/pose_covariance.h"
 #include "core/solve/factors/marker_pose.h"
 #include "core/solve/factors/pose_prior.h"
-#include "core/solve/pose_covariance.h"
 #include "core/solve/pose_graph.h"
 
 namespace vsgraphs {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 namespace vsgraphs {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <queue>
 
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 namespace vsgraphs {
 

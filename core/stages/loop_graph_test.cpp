@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/map/test_map.h"
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 #include "core/stages/loop_checks.h"
 
 namespace vsgraphs {

@@ -1,4 +1,4 @@
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/solve/factors/se3_jacobian.h"
+#include "core/geometry/se3_jacobian.h"
 
 namespace vsgraphs {
 
