@@ -122,6 +122,7 @@ void Map::apply_one(const RemoveKeyframe& op) {
   for (const LandmarkId landmark : observed) {
     if (landmark.valid()) apply_one(RemoveObservation{landmark, op.id});
   }
+  pass_on_steps(op.id);
   keyframes_.erase(op.id);
 }
 

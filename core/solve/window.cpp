@@ -164,7 +164,9 @@ Corrections corrections_of(const Map& map, const WindowProblem& problem) {
   return corrections;
 }
 
-WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+namespace {
+
+WindowProblem poses_of(const Map& map, const Window& window, const MeasurementModel& model) {
   WindowProblem problem;
   problem.bundle.intrinsics = Intrinsics::of(model.camera);
   for (const auto* members : {&window.free, &window.fixed}) {
@@ -174,7 +176,20 @@ WindowProblem build_problem(const Map& map, const Window& window, const Measurem
       problem.bundle.pose_fixed.push_back(members == &window.fixed);
     }
   }
+  return problem;
+}
+
+}  // namespace
+
+WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+  WindowProblem problem = poses_of(map, window, model);
   for (const FactorBuilder builder : factor_builders) builder(map, window, model, problem);
+  return problem;
+}
+
+WindowProblem build_landmark_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+  WindowProblem problem = poses_of(map, window, model);
+  build_landmark_factors(map, window, model, problem);
   return problem;
 }
 

@@ -52,6 +52,9 @@ Corrections corrections_of(const Map& map, const WindowProblem& problem);
 // markers.
 WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);
 
+// Landmarks alone: what the window's keyframes saw themselves, and nothing that the map makes of it.
+WindowProblem build_landmark_problem(const Map& map, const Window& window, const MeasurementModel& model);
+
 // Records the solution in `draft`: moved poses, landmarks, passengers, planes and markers, and removes the
 // observations that `report` calls outliers.
 void apply_solution(const Window& window, const WindowProblem& problem, const SolveReport& report,
