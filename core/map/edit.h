@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -55,9 +56,16 @@ struct MoveKeyframe {
   KeyframeId id;
   Se3 world_from_camera;
 };
+// Does nothing where the keyframe, or the one the step begins at, has vanished.
+struct SetOdometry {
+  KeyframeId id;
+  OdometryStep step;
+};
 struct MoveLandmark {
   LandmarkId id;
   Eigen::Vector3d point_in_world;
+  // Where the landmark turns with what it hangs on; without, it is looked for from where it was.
+  std::optional<Eigen::Vector3f> view_direction = std::nullopt;
 };
 struct SetAppearance {
   LandmarkId id;
@@ -169,10 +177,11 @@ struct AbsorbMap {
 
 using EditOperation =
     std::variant<AddKeyframe, RemoveKeyframe, AddLandmark, RemoveLandmark, MergeLandmark, AddObservation,
-                 RemoveObservation, MoveKeyframe, MoveLandmark, SetAppearance, CountSightings, SetPatches,
-                 AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation, MovePlane,
-                 ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, OpenMap, AbsorbMap,
-                 AddMarker, RemoveMarker, AddMarkerObservation, RemoveMarkerObservations, MoveMarker>;
+                 RemoveObservation, MoveKeyframe, SetOdometry, MoveLandmark, SetAppearance, CountSightings,
+                 SetPatches, AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation,
+                 MovePlane, ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, OpenMap,
+                 AbsorbMap, AddMarker, RemoveMarker, AddMarkerObservation, RemoveMarkerObservations,
+                 MoveMarker>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

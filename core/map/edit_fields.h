@@ -46,10 +46,15 @@ void visit_fields(T& v, auto& field) {
   auto& [id, world_from_camera] = v;
   field(id, world_from_camera);
 }
+template <FieldsOf<SetOdometry> T>
+void visit_fields(T& v, auto& field) {
+  auto& [id, step] = v;
+  field(id, step);
+}
 template <FieldsOf<MoveLandmark> T>
 void visit_fields(T& v, auto& field) {
-  auto& [id, point_in_world] = v;
-  field(id, point_in_world);
+  auto& [id, point_in_world, view_direction] = v;
+  field(id, point_in_world, view_direction);
 }
 template <FieldsOf<SetAppearance> T>
 void visit_fields(T& v, auto& field) {

@@ -27,6 +27,21 @@ void visit_fields(T& v, auto& field) {
   field(to, to_from_camera, information);
 }
 
+// Odometry as measured: where a keyframe stands as seen from the one before it in time. Said once, by what the two and their
+// neighbours in time saw, when local mapping is done with the keyframe, and never read from the map again: whatever is believed of
+// loops later, this stays. Where the one before is culled, the step goes on to the one before that.
+struct OdometryStep {
+  KeyframeId
+      before;  // it lives; an invalid one: nothing that was measured ties the keyframe to the one before
+  Se3 before_from_camera;
+  Matrix6d covariance = Matrix6d::Zero();  // tangent on the right of before_from_camera
+};
+template <FieldsOf<OdometryStep> T>
+void visit_fields(T& v, auto& field) {
+  auto& [before, before_from_camera, covariance] = v;
+  field(before, before_from_camera, covariance);
+}
+
 struct Keyframe {
   std::int64_t frame_index = 0;
   double timestamp_s = 0;
@@ -38,13 +53,14 @@ struct Keyframe {
   std::optional<TrackedLink> tracked_link;
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
   KeyframeId stretch;  // the first keyframe of its stretch (stretch.h); an invalid one begins one
+  std::optional<OdometryStep> odometry;  // none yet while local mapping is at it
 };
 template <FieldsOf<Keyframe> T>
 void visit_fields(T& v, auto& field) {
   auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks,
-         stretch] = v;
+         stretch, odometry] = v;
   field(frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks);
-  field.since(3, stretch);
+  field.since(3, stretch, odometry);
 }
 
 // What is left of a keyframe that was culled: where it stood, seen from a keyframe that stayed.

@@ -122,6 +122,7 @@ void Map::apply_one(const RemoveKeyframe& op) {
   for (const LandmarkId landmark : observed) {
     if (landmark.valid()) apply_one(RemoveObservation{landmark, op.id});
   }
+  pass_on_steps(op.id);
   keyframes_.erase(op.id);
 }
 
@@ -181,7 +182,10 @@ void Map::apply_one(const MoveKeyframe& op) {
 }
 
 void Map::apply_one(const MoveLandmark& op) {
-  if (Landmark* landmark = landmarks_.edit(op.id)) landmark->point_in_world = op.point_in_world;
+  Landmark* landmark = landmarks_.edit(op.id);
+  if (!landmark) return;
+  landmark->point_in_world = op.point_in_world;
+  if (op.view_direction) landmark->appearance.view_direction = *op.view_direction;
 }
 
 void Map::apply_one(const SetAppearance& op) {

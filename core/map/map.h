@@ -109,6 +109,7 @@ class Map {
   void apply_one(const AddObservation& op);
   void apply_one(const RemoveObservation& op);
   void apply_one(const MoveKeyframe& op);
+  void apply_one(const SetOdometry& op);
   void apply_one(const MoveLandmark& op);
   void apply_one(const SetAppearance& op);
   void apply_one(const CountSightings& op);
@@ -134,6 +135,8 @@ class Map {
   void absorb_markers(const Map& other, const Se3& world_from_other);
   // Rooms and floors that used a plane use what it was merged into, or do without it.
   void relink_structure(PlaneId gone, PlaneId into);
+  // Steps that begin at a keyframe which is about to go begin where its own does, if it has one.
+  void pass_on_steps(KeyframeId gone);
   void detach(LandmarkId landmark, const Observation& observation);
 
   Keyframes keyframes_;

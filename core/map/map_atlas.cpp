@@ -1,4 +1,5 @@
 // The part of the map that deals with there being several.
+#include "core/map/carry.h"
 #include "core/map/map.h"
 
 namespace vsgraphs {
@@ -23,27 +24,19 @@ void Map::apply_one(const AbsorbMap& op) {
   retired_.absorb(other.retired_);
   landmarks_.absorb(other.landmarks_);
   planes_.absorb(other.planes_);
-  const Se3& moved = op.world_from_other;
-  absorb_markers(other, moved);
-  if (!up_in_world_ && other.up_in_world_) up_in_world_ = moved.rotation() * *other.up_in_world_;
+  const Se3& by = op.world_from_other;
+  absorb_markers(other, by);
+  if (!up_in_world_ && other.up_in_world_) up_in_world_ = by.rotation() * *other.up_in_world_;
   if (other.structure_->next_number > structure_->next_number) {
     FoundStructure changed = *structure_;
     changed.next_number = other.structure_->next_number;
     structure_ = std::make_shared<const FoundStructure>(std::move(changed));
   }
-  if (moved.matrix().isIdentity(0)) return;
-  other.keyframes_.for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    keyframes_.edit(id)->world_from_camera = (moved * keyframe.world_from_camera).normalized();
-  });
-  other.landmarks_.for_each([&](LandmarkId id, const Landmark& was) {
-    Landmark& landmark = *landmarks_.edit(id);
-    landmark.point_in_world = moved * was.point_in_world;
-    landmark.appearance.view_direction =
-        (moved.rotation() * was.appearance.view_direction.cast<double>()).cast<float>();
-  });
-  other.planes_.for_each([&](PlaneId id, const MappedPlane& plane) {
-    planes_.edit(id)->plane = plane.plane.transformed(moved);
-  });
+  if (by.matrix().isIdentity(0)) return;
+  const auto move = [this, &by](auto id, const auto& thing) { apply_one(moved(id, thing, by)); };
+  other.keyframes_.for_each(move);
+  other.landmarks_.for_each(move);
+  other.planes_.for_each(move);
 }
 
 // A number both maps know is one marker: what both saw of it counts, and it stays where this map has it.
@@ -55,7 +48,7 @@ void Map::absorb_markers(const Map& other, const Se3& world_from_other) {
       united.observations.insert(united.observations.end(), theirs->observations.begin(),
                                  theirs->observations.end());
     } else {
-      united.world_from_marker = (world_from_other * theirs->world_from_marker).normalized();
+      united.world_from_marker = moved(id, *theirs, world_from_other).world_from_marker;
     }
     ours = std::make_shared<const MappedMarker>(std::move(united));
   }

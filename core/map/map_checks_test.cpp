@@ -56,6 +56,24 @@ TEST_F(MapChecks, AMapThatWasMadeByEditsPasses) {
   EXPECT_EQ(wrong_with_values(empty), nullptr);
 }
 
+TEST_F(MapChecks, OdometryBeginsAtALivingKeyframeBefore) {
+  const auto with_step = [this](const OdometryStep& step) {
+    return after_keyframe([&step](Keyframe& keyframe) { keyframe.odometry = step; });
+  };
+  EXPECT_EQ(with_step({}), "") << "a gap";
+  EXPECT_NE(with_step({map_.retired_keyframes().at_index(0), Se3{}}), "") << "it was culled";
+  EXPECT_NE(with_step({other_keyframe_, Se3{}}), "") << "it came later";
+  const auto of_other = [this](const OdometryStep& step) {
+    return after<Map::Keyframes>([&](auto& table) { table.edit(other_keyframe_)->odometry = step; });
+  };
+  EXPECT_EQ(of_other({keyframe_, Se3{}, Matrix6d::Identity()}), "");
+  EXPECT_NE(of_other({keyframe_, Se3{}, nan * Matrix6d::Identity()}), "");
+  EXPECT_NE(of_other({keyframe_, Se3{}, -Matrix6d::Identity()}), "");
+  EXPECT_NE(
+      of_other({keyframe_, {2 * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()}, Matrix6d::Identity()}),
+      "");
+}
+
 TEST_F(MapChecks, KeyframesAndLandmarksNameEachOther) {
   ASSERT_TRUE(landmark_.valid());
   const std::string unknown = "a keyframe that sees a landmark which does not exist";

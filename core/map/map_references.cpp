@@ -19,13 +19,17 @@ Wrong wrong_with_keyframes(const Map& map) {
         (map.stretch_of(id).index > index || map.stretch_of(map.stretch_of(id)) != map.stretch_of(id)))
       wrong = "a keyframe of a stretch that does not exist";
   }
-  map.keyframes().for_each([&](KeyframeId, const Keyframe& keyframe) {
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
     if (!keyframe.features)
       wrong = "a keyframe without features";
     else if (keyframe.landmarks.size() != static_cast<std::size_t>(keyframe.features->size()))
       wrong = "a keyframe whose landmarks do not fit its features";
     else if (keyframe.tracked_link && !map.retired_keyframes().contains(keyframe.tracked_link->to))
       wrong = "a keyframe linked with one that does not exist";
+    else if (keyframe.odometry && keyframe.odometry->before.valid() &&
+             (keyframe.odometry->before.index >= id.index ||
+              !map.keyframes().contains(keyframe.odometry->before)))
+      wrong = "a keyframe that comes after one that does not exist";
   });
   return wrong;
 }

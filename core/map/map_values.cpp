@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/geometry/bounds.h"
+#include "core/geometry/pose_covariance.h"
 #include "core/map/map_checks.h"
 
 namespace vsgraphs {
@@ -36,6 +37,8 @@ bool is_sane(const KeyframeSurfaces* surfaces) {
 
 bool is_sane(const Keyframe& keyframe) {
   const auto& link = keyframe.tracked_link;
+  const auto& step = keyframe.odometry;
+  if (step && !(is_pose(step->before_from_camera) && is_covariance(step->covariance))) return false;
   return is_frame(keyframe.frame_index) && std::isfinite(keyframe.timestamp_s) &&
          is_pose(keyframe.world_from_camera) && (!keyframe.surface || is_sane(*keyframe.surface)) &&
          is_sane(keyframe.patches.get()) &&

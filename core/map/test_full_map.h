@@ -75,6 +75,8 @@ inline void add_points(Map& map) {
     keyframes.push_back(add_keyframe(map, keyframe));
     map.apply(SetPatches{keyframes.back(), some_patches(3)});
   }
+  map.apply(SetOdometry{keyframes[2], {}});
+  map.apply(SetOdometry{keyframes[3], {keyframes[2], standing_at(0.1), 1e-4 * Matrix6d::Identity()}});
   const auto landmarks = add_landmarks(map, points, {keyframes[0], keyframes[1], keyframes[2]});
   const auto twin = add_landmark(map, points[0], 0, {{keyframes[3], 0}});
   map.apply(MergeLandmark{twin, landmarks[0]});

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/solve/bundle/block_matrix.h"
-#include "core/solve/bundle/dense_part.h"
-#include "core/solve/bundle/landmark_part.h"
+#include "core/solve/bundle/pattern.h"
 #include "core/solve/bundle/validate.h"
 
 namespace vsgraphs {
@@ -61,16 +59,7 @@ LevenbergMarquardt::LevenbergMarquardt(const BundleProblem& problem, const Bundl
       landmarks_(problem, order_.pose, options),
       dense_(problem, order_),
       lambda_(std::clamp(options.initial_lambda, min_lambda, max_lambda)) {
-  std::vector<std::vector<int>> rows(order_.dims.size());
-  for (std::size_t v = 0; v < rows.size(); ++v) rows[v].push_back(static_cast<int>(v));
-  landmarks_.add_pairs(rows);
-  dense_.add_pairs(rows);
-  for (auto& row : rows) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-  }
-  pattern_.build(order_.dims, rows);
-  landmarks_.bind(pattern_);
+  build_pattern(order_, dense_, landmarks_, pattern_);
   normal_.resize(pattern_.value_count());
   reduced_.resize(pattern_.value_count());
   solver_ = std::make_unique<ReducedSolver>(pattern_, pattern_.variables() > options.max_dense_poses);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/solve/factors/se3_jacobian.h"
+#include "core/geometry/se3_jacobian.h"
 #include "core/solve/pose_normal.h"
 
 namespace vsgraphs {

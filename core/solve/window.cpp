@@ -154,7 +154,19 @@ Window select_window(const Map& map, KeyframeId centre, int max_free, int max_fi
   return window;
 }
 
-WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+Corrections corrections_of(const Map& map, const WindowProblem& problem) {
+  Corrections corrections(map.keyframes().index_bound());
+  for (std::size_t i = 0; i < problem.keyframe_of_pose.size(); ++i) {
+    if (problem.bundle.pose_fixed[i]) continue;
+    const KeyframeId id = problem.keyframe_of_pose[i];
+    corrections[id.index] = problem.bundle.poses[i] * map.keyframes().find(id)->world_from_camera.inverse();
+  }
+  return corrections;
+}
+
+namespace {
+
+WindowProblem poses_of(const Map& map, const Window& window, const MeasurementModel& model) {
   WindowProblem problem;
   problem.bundle.intrinsics = Intrinsics::of(model.camera);
   for (const auto* members : {&window.free, &window.fixed}) {
@@ -164,7 +176,20 @@ WindowProblem build_problem(const Map& map, const Window& window, const Measurem
       problem.bundle.pose_fixed.push_back(members == &window.fixed);
     }
   }
+  return problem;
+}
+
+}  // namespace
+
+WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+  WindowProblem problem = poses_of(map, window, model);
   for (const FactorBuilder builder : factor_builders) builder(map, window, model, problem);
+  return problem;
+}
+
+WindowProblem build_landmark_problem(const Map& map, const Window& window, const MeasurementModel& model) {
+  WindowProblem problem = poses_of(map, window, model);
+  build_landmark_factors(map, window, model, problem);
   return problem;
 }
 
@@ -193,19 +218,13 @@ void apply_solution(const Window& window, const WindowProblem& problem, const So
     draft.record(RemoveObservation{problem.landmark_of_point[static_cast<std::size_t>(o.landmark)],
                                    problem.keyframe_of_pose[static_cast<std::size_t>(o.pose)]});
   }
-  const std::vector<int> positions = pose_positions(draft.map(), problem);
+  const Corrections corrections = corrections_of(draft.map(), problem);
+  const Carry carry(draft.map(), corrections);
   for (const LandmarkId id : window.passengers) {
-    const Landmark* landmark = draft.map().landmarks().find(id);
-    if (!landmark || landmark->observations.empty()) continue;
-    const KeyframeId carrier = landmark->observations.front().keyframe;
-    const int position = positions[carrier.index];
-    if (position < 0) continue;
-    const Se3& before = draft.map().keyframes().find(carrier)->world_from_camera;
-    const Se3& after = bundle.poses[static_cast<std::size_t>(position)];
-    draft.record(MoveLandmark{id, after * (before.inverse() * landmark->point_in_world)});
+    if (auto move = carry.landmark(id)) draft.record(*std::move(move));
   }
-  move_passenger_planes(problem, draft);
-  move_passenger_markers(problem, draft);
+  move_passenger_planes(problem, corrections, draft);
+  move_passenger_markers(problem, corrections, draft);
   for (std::size_t i = 0; i < bundle.poses.size(); ++i) {
     if (!bundle.pose_fixed[i]) draft.record(MoveKeyframe{problem.keyframe_of_pose[i], bundle.poses[i]});
   }

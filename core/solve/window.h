@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/map/carry.h"
 #include "core/map/draft.h"
 #include "core/map/map.h"
 #include "core/solve/bundle_adjustment.h"
@@ -44,9 +45,15 @@ struct WindowProblem {
 // Per keyframe index, the keyframe's pose in the problem; -1 where it has none.
 std::vector<int> pose_positions(const Map& map, const WindowProblem& problem);
 
+// What the solution moves each keyframe by; identity for those that are fixed or outside. `map` has the poses of before.
+Corrections corrections_of(const Map& map, const WindowProblem& problem);
+
 // Walks the table of factor builders: landmarks, tracked links, planes, walls on their ground, rooms and floors,
 // markers.
 WindowProblem build_problem(const Map& map, const Window& window, const MeasurementModel& model);
+
+// Landmarks alone: what the window's keyframes saw themselves, and nothing that the map makes of it.
+WindowProblem build_landmark_problem(const Map& map, const Window& window, const MeasurementModel& model);
 
 // Records the solution in `draft`: moved poses, landmarks, passengers, planes and markers, and removes the
 // observations that `report` calls outliers.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "core/geometry/pose_covariance.h"
 #include "core/solve/factors/marker_pose.h"
 #include "core/solve/factors/pose_prior.h"
-#include "core/solve/pose_covariance.h"
 #include "core/solve/pose_graph.h"
 
 namespace vsgraphs {
@@ -99,22 +99,17 @@ void build_marker_factors(const Map& map, const Window&, const MeasurementModel&
   }
 }
 
-void move_passenger_markers(const WindowProblem& problem, Draft& draft) {
+void move_passenger_markers(const WindowProblem& problem, const Corrections& corrections, Draft& draft) {
   const Map& map = draft.map();
+  const Carry carry(map, corrections);
   const MarkerGathering gathering(map, problem);
   std::vector<MoveMarker> moves;
   const std::set<MarkerId> solved(problem.marker_of_variable.begin(), problem.marker_of_variable.end());
   for (const auto& [id, marker] : map.markers()) {
     if (solved.contains(id)) continue;
-    const MarkerSightings sightings = map.sightings(*marker);
-    if (sightings.places.empty()) continue;
-    const MarkerObservation& first = marker->observations[sightings.places.front().observations.front()];
-    const int pose = gathering.pose_of(first.keyframe);
-    if (!gathering.is_free(pose)) continue;
-    const KeyframeId carrier = problem.keyframe_of_pose[static_cast<std::size_t>(pose)];
-    const Se3& before = map.keyframes().find(carrier)->world_from_camera;
-    const Se3& after = problem.bundle.poses[static_cast<std::size_t>(pose)];
-    moves.push_back({id, (after * before.inverse() * marker->world_from_marker).normalized()});
+    const auto carrier = carrier_of(map, *marker);
+    if (!carrier || !gathering.is_free(gathering.pose_of(*carrier))) continue;
+    if (const auto move = carry.marker(id)) moves.push_back(*move);
   }
   for (MoveMarker& move : moves) draft.record(std::move(move));
 }

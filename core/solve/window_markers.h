@@ -11,8 +11,7 @@ namespace vsgraphs {
 void build_marker_factors(const Map& map, const Window& window, const MeasurementModel& model,
                           WindowProblem& problem);
 
-// Markers that are no variables move with the first keyframe that saw them. To be called while `draft` still has the poses
-// of before.
-void move_passenger_markers(const WindowProblem& problem, Draft& draft);
+// Markers that are no variables move with the first keyframe that saw them, where that is free.
+void move_passenger_markers(const WindowProblem& problem, const Corrections& corrections, Draft& draft);
 
 }  // namespace vsgraphs

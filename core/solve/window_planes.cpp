@@ -21,7 +21,7 @@ constexpr FrameTolerance frame_error{0.01, 0.004};
 constexpr FrameTolerance outer_pose_error{0.03, 0.01};
 
 // The keyframe that alone has seen the plane; invalid if there are several or none.
-KeyframeId carrier_of(const MappedPlane& plane) {
+KeyframeId only_observer_of(const MappedPlane& plane) {
   if (plane.observations.empty()) return {};
   const KeyframeId first = plane.observations.front().keyframe;
   const bool alone = std::all_of(plane.observations.begin(), plane.observations.end(),
@@ -46,7 +46,7 @@ class PlaneGathering {
     inside_.clear();
     outside_.clear();
     free_ = false;
-    if (carrier_of(plane).valid()) return false;
+    if (only_observer_of(plane).valid()) return false;
     KeyframeId stretch;
     std::size_t first = 0;
     for (std::size_t i = 0; i <= plane.observations.size(); ++i) {
@@ -175,17 +175,16 @@ void build_wall_to_ground_factors(const Map& map, const Window&, const Measureme
   }
 }
 
-void move_passenger_planes(const WindowProblem& problem, Draft& draft) {
+void move_passenger_planes(const WindowProblem& problem, const Corrections& corrections, Draft& draft) {
   const Map& map = draft.map();
+  const Carry carry(map, corrections);
   const std::vector<int> pose_of = pose_positions(map, problem);
   std::vector<MovePlane> moves;
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
-    const auto living = map.reanchor({carrier_of(plane), Se3{}});
+    const auto living = map.reanchor({only_observer_of(plane), Se3{}});
     const int pose = living ? pose_of[living->keyframe.index] : -1;
     if (pose < 0 || problem.bundle.pose_fixed[static_cast<std::size_t>(pose)]) return;
-    const Se3& before = map.keyframes().find(living->keyframe)->world_from_camera;
-    const Se3& after = problem.bundle.poses[static_cast<std::size_t>(pose)];
-    moves.push_back({id, plane.plane.transformed(after * before.inverse())});
+    if (const auto move = carry.plane(id)) moves.push_back(*move);
   });
   for (MovePlane& move : moves) draft.record(std::move(move));
 }

@@ -15,7 +15,7 @@ void build_plane_factors(const Map& map, const Window& window, const Measurement
 void build_wall_to_ground_factors(const Map& map, const Window& window, const MeasurementModel& model,
                                   WindowProblem& problem);
 
-// Planes that one free keyframe alone has seen move with it. To be called while `draft` still has the poses of before.
-void move_passenger_planes(const WindowProblem& problem, Draft& draft);
+// Planes that one free keyframe alone has seen move with it.
+void move_passenger_planes(const WindowProblem& problem, const Corrections& corrections, Draft& draft);
 
 }  // namespace vsgraphs

@@ -268,5 +268,17 @@ TEST_F(WrongStart, PassengersMoveWithTheirKeyframe) {
   EXPECT_LT((adjusted().landmarks().find(passenger)->point_in_world - seen[35]).norm(), 1e-3);
 }
 
+TEST_F(WrongStart, PassengersTurnWithTheirKeyframe) {
+  map_.apply(MoveKeyframe{moved, {so3_exp({0, 0.05, 0}), {0.35, 0, 0}}});
+  const Se3 before = keyframe(moved).world_from_camera;
+  const Map after = adjusted();
+  const Se3 turn = after.keyframes().find(moved)->world_from_camera * before.inverse();
+  ASSERT_GT(rotation_angle(turn.rotation()), 0.04);
+  const auto direction = [this](const Map& map) {
+    return map.landmarks().find(passenger)->appearance.view_direction;
+  };
+  EXPECT_LT((direction(after) - turn.rotation().cast<float>() * direction(map_)).norm(), 1e-5F);
+}
+
 }  // namespace
 }  // namespace vsgraphs

@@ -5,6 +5,7 @@
 #include "core/stages/appearance.h"
 #include "core/stages/landmark_creation.h"
 #include "core/stages/landmark_fusion.h"
+#include "core/stages/odometry.h"
 
 namespace vsgraphs {
 
@@ -120,6 +121,8 @@ MapEdit LocalMapper::refine(KeyframeId keyframe, const Snapshot& snapshot, const
   }
   add_linked(draft.map(), keyframe, candidates);
   cull_keyframes(options_.culling, candidates, draft);
+  const Span measuring(trace, "odometry");
+  measure_odometry(model_, window, keyframe, draft);
   return draft.take();
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 namespace vsgraphs {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 namespace vsgraphs {
 
@@ -40,52 +40,10 @@ Corrections spread_correction(const Map& map, const KeyframeGraph& graph, const 
   return corrections;
 }
 
-AnchoredPlane moved_plane(const Map& map, const MappedPlane& plane, const Corrections& corrections) {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero(), anchor = Eigen::Vector3d::Zero();
-  std::vector<AnchoredPlane> seen;
-  for (const PlaneObservation& o : plane.observations) {
-    const auto living = map.reanchor({o.keyframe, Se3{}});
-    if (!living) continue;
-    seen.push_back(plane.plane.transformed(corrections[living->keyframe.index]));
-    normal += seen.back().normal;
-    anchor += seen.back().anchor;
-  }
-  if (seen.empty() || normal.norm() < 1e-3) return plane.plane;
-  AnchoredPlane moved{normal.normalized(), anchor / static_cast<double>(seen.size()), 0};
-  for (const AnchoredPlane& s : seen) moved.offset_m += s.signed_distance(moved.anchor);
-  moved.offset_m /= static_cast<double>(seen.size());
-  return moved;
-}
-
-namespace {
-
-// The living keyframe that stands for the first one that saw the marker where it stands.
-std::optional<KeyframeId> carrier_of(const Map& map, const MappedMarker& marker) {
-  const MarkerSightings sightings = map.sightings(marker);
-  if (sightings.places.empty()) return std::nullopt;
-  const std::size_t first = sightings.places.front().observations.front();
-  return map.reanchor({marker.observations[first].keyframe, Se3{}})->keyframe;
-}
-
-}  // namespace
-
 void move_map(const Corrections& corrections, Draft& draft) {
   const Map before = draft.map();
-  before.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    draft.record(MoveKeyframe{id, (corrections[id.index] * keyframe.world_from_camera).normalized()});
-  });
-  before.landmarks().for_each([&](LandmarkId id, const Landmark& landmark) {
-    if (landmark.observations.empty()) return;
-    const Se3& correction = corrections[landmark.observations.front().keyframe.index];
-    draft.record(MoveLandmark{id, correction * landmark.point_in_world});
-  });
-  before.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
-    draft.record(MovePlane{id, moved_plane(before, plane, corrections)});
-  });
-  for (const auto& [id, marker] : before.markers()) {
-    if (const auto living = carrier_of(before, *marker))
-      draft.record(MoveMarker{id, (corrections[living->index] * marker->world_from_marker).normalized()});
-  }
+  for (EditOperation& move : carry(before, corrections)) draft.record(std::move(move));
+  if (auto nodes = Carry(before, corrections).structure_nodes()) draft.record(*std::move(nodes));
 }
 
 void join_sights(const LoopAlignment& loop, Draft& draft) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/options.h"
+#include "core/map/carry.h"
 #include "core/map/draft.h"
 #include "core/solve/pose_graph.h"
 #include "core/stages/loop_alignment.h"
@@ -27,19 +28,12 @@ void describe(LoopCorrectionOptions& o, Visitor& field) {
   field("negligible_deg", o.negligible_deg, 0.0, 45.0, "the same for the angle");
 }
 
-// By keyframe index: what moves the keyframe's surroundings, world from world. Identity where there is no keyframe.
-using Corrections = std::vector<Se3>;
-
 // The pose graph's optimum with the loop in it. The oldest keyframe stays.
 Corrections spread_correction(const Map& map, const KeyframeGraph& graph, const LoopAlignment& loop,
                               KeyframeId place, const LoopCorrectionOptions& options, SolveReport& report);
 
-// Moves keyframes, landmarks and markers (with the first keyframe that observed them) and planes (by the mean of those that
-// see them).
+// Moves keyframes and all that hangs on them (core/map/carry.h).
 void move_map(const Corrections& corrections, Draft& draft);
-
-// One plane as its observers' corrections have it.
-AnchoredPlane moved_plane(const Map& map, const MappedPlane& plane, const Corrections& corrections);
 
 // What the keyframe sees of the place becomes one with what it had made of it itself.
 void join_sights(const LoopAlignment& loop, Draft& draft);

@@ -81,24 +81,15 @@ TEST_F(LoopCorrectionTest, LandmarksAndPlanesMoveWithTheirKeyframes) {
   EXPECT_NEAR(map_.planes().find(plane)->plane.d(), expected.d(), 1e-9);
 }
 
-TEST_F(LoopCorrectionTest, APlaneSeenByTwoMovesByTheMean) {
-  const PlaneId plane = map_plane(map_, {{at(2), 0}, {at(3), 0}});
-  Corrections c(map_.keyframes().index_bound());
-  const Eigen::Vector3d normal = map_.planes().find(plane)->plane.normal;
-  c[at(2).index] = Se3(Eigen::Matrix3d::Identity(), 0.2 * normal);
-  const AnchoredPlane before = map_.planes().find(plane)->plane;
-  const AnchoredPlane moved = moved_plane(map_, *map_.planes().find(plane), c);
-  EXPECT_LT((moved.normal - before.normal).norm(), 1e-12);
-  EXPECT_NEAR(moved.d(), before.d() - 0.1, 1e-12);
-}
-
-TEST_F(LoopCorrectionTest, APlaneOfACulledKeyframeFollowsItsAnchor) {
-  const PlaneId plane = map_plane(map_, {{at(20), 0}});
-  map_.apply(RemoveKeyframe{at(20), at(21)});
-  Corrections c(map_.keyframes().index_bound());
-  c[at(21).index] = standing_at(1, 2, 3);
-  const MappedPlane& before = *map_.planes().find(plane);
-  EXPECT_NEAR(moved_plane(map_, before, c).d(), before.plane.transformed(standing_at(1, 2, 3)).d(), 1e-12);
+TEST_F(LoopCorrectionTest, LandmarksAreLookedForFromWhereTheirKeyframesStandNow) {
+  Corrections c(map_.keyframes().index_bound(), Se3(so3_exp({0, std::numbers::pi / 2, 0}), {1, 0, 0}));
+  const Map before = map_;
+  Draft draft(map_.snapshot());
+  move_map(c, draft);
+  before.landmarks().for_each([&](LandmarkId id, const Landmark& was) {
+    const Eigen::Vector3f expected = c[0].rotation().cast<float>() * was.appearance.view_direction;
+    EXPECT_LT((draft.map().landmarks().find(id)->appearance.view_direction - expected).norm(), 1e-5F);
+  });
 }
 
 TEST_F(LoopCorrectionTest, MarkersMoveWithTheFirstKeyframeThatSawThemOrItsAnchor) {

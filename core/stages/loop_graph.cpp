@@ -8,7 +8,8 @@
 #include <numeric>
 #include <queue>
 
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
+#include "core/stages/odometry_trust.h"
 
 namespace vsgraphs {
 
@@ -39,7 +40,8 @@ Matrix6d link_covariance(const DriftOptions& options, const TrackedLink& link, c
 
 class Builder {
  public:
-  Builder(const Map& map, const DriftOptions& options) : map_(map), options_(options) {
+  Builder(const Map& map, const DriftOptions& options)
+      : map_(map), options_(options), contradicted_(contradicted_steps(map, options)) {
     graph_.position.assign(map.keyframes().index_bound(), -1);
     map.keyframes().for_each([this](KeyframeId id, const Keyframe&) {
       graph_.position[id.index] = static_cast<int>(graph_.keyframes.size());
@@ -52,6 +54,7 @@ class Builder {
   KeyframeGraph build(int strongest) {
     add_covisible(strongest);
     add_links();
+    add_contradicted_steps();
     bridge_gaps();
     return std::move(graph_);
   }
@@ -67,6 +70,16 @@ class Builder {
   Se3 relative(int a, int b) const {
     return keyframe(a).world_from_camera.inverse() * keyframe(b).world_from_camera;
   }
+  // Null where none was measured from `a` to `b`.
+  const OdometryStep* step_between(int a, int b) const {
+    const auto& step = keyframe(b).odometry;
+    return step && step->before == graph_.keyframes[static_cast<std::size_t>(a)] ? &*step : nullptr;
+  }
+  KeyframeEdge edge_of(int a, int b, int shared, const Matrix6d& covariance) const {
+    const OdometryStep* step = step_between(a, b);
+    if (!step || (shared > 0 && !contradicted(b))) return {a, b, shared, relative(a, b), covariance};
+    return {a, b, shared, step->before_from_camera, floored(step->covariance, covariance)};
+  }
   int root_of(int i) {
     int& parent = root_[static_cast<std::size_t>(i)];
     if (parent != i) parent = root_of(parent);
@@ -77,6 +90,17 @@ class Builder {
     if (from == to) return false;
     root_[static_cast<std::size_t>(from)] = to;
     return true;
+  }
+
+  bool contradicted(int b) const {
+    return contradicted_[graph_.keyframes[static_cast<std::size_t>(b)].index] != 0;
+  }
+  // Within a run that the map has bent, only what was measured counts.
+  bool bent(int a, int b) const {
+    if (b - a > longest_run || step_between(a, b)) return false;
+    for (int i = a + 1; i <= b; ++i)
+      if (contradicted(i)) return true;
+    return false;
   }
 
   // Each pair once, most shared landmarks first.
@@ -99,10 +123,10 @@ class Builder {
 
   void add_covisible(int strongest) {
     for (const Pair& p : covisible_pairs()) {
+      if (bent(p.a, p.b)) continue;
       const bool in_tree = join(p.a, p.b);
       if (!in_tree && p.rank >= strongest) continue;
-      graph_.edges.push_back(
-          {p.a, p.b, p.shared, relative(p.a, p.b), covisible_covariance(options_, p.shared)});
+      graph_.edges.push_back(edge_of(p.a, p.b, p.shared, covisible_covariance(options_, p.shared)));
     }
   }
 
@@ -117,6 +141,15 @@ class Builder {
     }
   }
 
+  // Those of keyframes that share too little to be joined by it.
+  void add_contradicted_steps() {
+    for (int b = 0; b < static_cast<int>(graph_.keyframes.size()); ++b) {
+      if (!contradicted(b)) continue;
+      const int a = graph_.position_of(keyframe(b).odometry->before);
+      if (join(a, b)) graph_.edges.push_back(edge_of(a, b, 0, covisible_covariance(options_, 1)));
+    }
+  }
+
   void bridge_gaps() {
     std::vector<int> in_time(graph_.keyframes.size());
     std::iota(in_time.begin(), in_time.end(), 0);
@@ -125,13 +158,15 @@ class Builder {
     for (std::size_t i = 1; i < in_time.size(); ++i) {
       const int a = in_time[i - 1], b = in_time[i];
       if (!join(a, b)) continue;
-      const Se3 step = relative(a, b);
-      graph_.edges.push_back({a, b, 0, step, gap_covariance(options_, step)});
+      const bool measured = step_between(a, b) != nullptr;
+      graph_.edges.push_back(edge_of(
+          a, b, 0, measured ? covisible_covariance(options_, 1) : gap_covariance(options_, relative(a, b))));
     }
   }
 
   const Map& map_;
   const DriftOptions& options_;
+  std::vector<std::uint8_t> contradicted_;  // by keyframe index: the step to it
   KeyframeGraph graph_;
   std::vector<int> root_;
 };

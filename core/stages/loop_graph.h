@@ -42,7 +42,7 @@ void describe(DriftOptions& o, Visitor& field) {
 struct KeyframeEdge {
   int a = 0, b = 0;  // positions in KeyframeGraph::keyframes
   int shared = 0;    // landmarks; 0: a tracked link, or keyframes that merely follow each other
-  Se3 a_from_b;      // as the map has it, or as tracking measured it
+  Se3 a_from_b;      // as odometry or tracking measured it, else as the map has it
   Matrix6d covariance = Matrix6d::Zero();  // of its noise, tangent on the right of a_from_b
 };
 
@@ -56,6 +56,8 @@ struct KeyframeGraph {
 
 // Every keyframe with its `strongest` neighbours among those that share at least 15 landmarks, the tree of most shared
 // landmarks, the tracked links, and, where that leaves it in pieces, edges between keyframes that follow each other in time.
+// Where the map contradicts the odometry that was measured (odometry_trust.h), its poses are not asked: an edge there is what was
+// measured, never believed to be firmer than one of the map's, so that a correction that was wrong does not hold itself up.
 // Connected. Cost: one visit per pair of observations of a landmark, 0.1 s for 2,000 keyframes.
 KeyframeGraph graph_of(const Map& map, const DriftOptions& options, int strongest = 5);
 

@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/pose_covariance.h"
 #include "core/map/test_map.h"
-#include "core/solve/pose_covariance.h"
 #include "core/stages/loop_checks.h"
 
 namespace vsgraphs {
@@ -26,7 +27,7 @@ struct Row {
     int name = 0;
     for (int k = 0; k < keyframes; ++k) {
       const Se3 pose = standing_at(step_m * k);
-      const test::Points points = test::point_grid(3 * shared, 1, step_m * k);
+      const test::Points points = test::point_grid(3 * std::max(shared, 10), 1, step_m * k);
       Keyframe keyframe = test::keyframe_seeing(camera, pose, points);
       keyframe.frame_index = k;
       ids.push_back(test::add_keyframe(map, keyframe));
@@ -72,6 +73,66 @@ TEST(LoopGraph, UsesTrackedLinksAndBridgesWhatIsLeft) {
   EXPECT_TRUE(has_edge(graph, 2, 3)) << "one after the other in time";
   EXPECT_NEAR(graph.edges[1].a_from_b.translation().x(), 0.9, 1e-12) << "as tracked, not as mapped";
   EXPECT_GT(graph.edges[2].covariance.trace(), 5 * graph.edges[1].covariance.trace());
+}
+
+TEST(LoopGraph, GoesByMeasuredOdometryWhereTheMapContradictsIt) {
+  Row row(3, 0.3, 40);
+  Vector6d variances;
+  variances << 1e-8, 1e-8, 4e-2, 1e-8, 1e-8, 1e-8;
+  row.map.apply(SetOdometry{row.ids[1], {row.ids[0], standing_at(0.301), variances.asDiagonal()}});
+  row.map.apply(SetOdometry{row.ids[2], {row.ids[1], standing_at(0.301), variances.asDiagonal()}});
+  const auto first_step = [&row] {
+    const KeyframeGraph graph = graph_of(row.map, {});
+    EXPECT_EQ(graph.edges.size(), 2U);
+    return graph.edges[graph.edges[0].a == 0 ? 0 : 1];
+  };
+  EXPECT_NEAR(first_step().a_from_b.translation().x(), 0.3, 1e-12) << "where they agree the map knows more";
+  row.map.apply(MoveKeyframe{row.ids[1], standing_at(5)});
+  const KeyframeEdge edge = first_step();
+  EXPECT_NEAR(edge.a_from_b.translation().x(), 0.301, 1e-12);
+  EXPECT_NEAR(edge.covariance(2, 2), 4e-2, 1e-12);
+  const double noise = std::pow(DriftOptions{}.step_m, 2) * 100.0 / 40.0;
+  EXPECT_NEAR(edge.covariance(0, 0), noise, 1e-12) << "never firmer than an edge of the map";
+}
+
+// All see the same landmarks; a loop that was wrong moved the second half.
+TEST(LoopGraph, NothingThatAWrongCorrectionMadeHoldsItUp) {
+  Row row(6, 0.3, 0);
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Observation> all;
+    for (const KeyframeId id : row.ids) all.push_back({id, static_cast<std::uint16_t>(i)});
+    test::add_landmark(row.map, {0, 0, 2}, i, all);
+  }
+  for (std::size_t k = 1; k < row.ids.size(); ++k)
+    row.map.apply(SetOdometry{row.ids[k], {row.ids[k - 1], standing_at(0.3), 1e-6 * Matrix6d::Identity()}});
+  const auto edges_off = [&row] {
+    int off = 0;
+    const KeyframeGraph graph = graph_of(row.map, {}, 10);
+    for (const KeyframeEdge& e : graph.edges)
+      off += std::abs(e.a_from_b.translation().x() - 0.3 * (e.b - e.a)) > 0.01;
+    return off;
+  };
+  ASSERT_EQ(graph_of(row.map, {}, 10).edges.size(), 15U);
+  const Se3 wrong(so3_exp({0, 1.5, 0}), {7, 0, 1});
+  for (const std::size_t k : {3U, 4U, 5U})
+    row.map.apply(MoveKeyframe{row.ids[k], wrong * standing_at(0.3 * static_cast<double>(k))});
+  EXPECT_EQ(edges_off(), 0);
+}
+
+TEST(LoopGraph, BridgesGapsByOdometryWhereThereIsSome) {
+  Row row(1, 0.3, 40);
+  for (const double x : {1.0, 2.0}) {
+    Keyframe k = test::keyframe_seeing(row.camera, standing_at(x), test::point_grid(3, 3, x));
+    k.frame_index = static_cast<std::int64_t>(10 * x);
+    row.ids.push_back(test::add_keyframe(row.map, k));
+  }
+  row.map.apply(SetOdometry{row.ids[1], {row.ids[0], standing_at(1.1), 1e-4 * Matrix6d::Identity()}});
+  row.map.apply(SetOdometry{row.ids[2], {}});
+  const KeyframeGraph graph = graph_of(row.map, {});
+  ASSERT_EQ(graph.edges.size(), 2U);
+  EXPECT_NEAR(graph.edges[0].a_from_b.translation().x(), 1.1, 1e-12);
+  EXPECT_NEAR(graph.edges[1].a_from_b.translation().x(), 1.0, 1e-12);
+  EXPECT_LT(graph.edges[0].covariance.trace(), graph.edges[1].covariance.trace());
 }
 
 TEST(LoopGraph, KeepsTheStrongestNeighboursAndATree) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/check.h"
+#include "core/map/carry.h"
 
 namespace vsgraphs {
 
@@ -88,17 +89,19 @@ class Rebaser {
   static void refuse() { throw InvariantError("an edit that adds to the map cannot be rebased"); }
 
   void say(const MoveKeyframe& op, std::vector<EditOperation>& out) {
-    const Keyframe* keyframe = now_.keyframes().find(op.id);
-    if (!keyframe) return;
-    const Se3 pose = corrections_[op.id.index] * keyframe->world_from_camera;
-    out.push_back(MoveKeyframe{op.id, pose.normalized()});
+    if (now_.keyframes().contains(op.id)) out.push_back(Carry(now_, corrections_).keyframe(op.id));
   }
 
   void say(const MoveLandmark& op, std::vector<EditOperation>& out) {
     const Landmark* before = old_.landmarks().find(op.id);
     if (!before || !now_.landmarks().contains(op.id)) return;
-    if (const auto way = way_of_first(before->observations))
-      out.push_back(MoveLandmark{op.id, *way * op.point_in_world});
+    const auto way = way_of_first(before->observations);
+    if (!way) return;
+    MoveLandmark moved{op.id, *way * op.point_in_world, {}};
+    // Its look may have been renewed since: what it has now is turned.
+    const auto carried = Carry(now_, corrections_).landmark(op.id);
+    if (op.view_direction && carried) moved.view_direction = carried->view_direction;
+    out.push_back(std::move(moved));
   }
 
   void say(const MovePlane& op, std::vector<EditOperation>& out) {
@@ -145,35 +148,14 @@ class Rebaser {
   }
 
   void carry_new(std::vector<EditOperation>& out) const {
-    now_.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-      if (old_.keyframes().contains(id)) return;
-      const Se3 pose = corrections_[id.index] * keyframe.world_from_camera;
-      out.push_back(MoveKeyframe{id, pose.normalized()});
-    });
-    now_.landmarks().for_each([&](LandmarkId id, const Landmark& landmark) {
-      if (old_.landmarks().contains(id) || landmark.observations.empty()) return;
-      const Se3& correction = corrections_[landmark.observations.front().keyframe.index];
-      out.push_back(MoveLandmark{id, correction * landmark.point_in_world});
-    });
-    now_.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
-      if (old_.planes().contains(id) || plane.observations.empty()) return;
-      const auto living = now_.reanchor({plane.observations.front().keyframe, Se3{}});
-      if (living) out.push_back(MovePlane{id, plane.plane.transformed(corrections_[living->keyframe.index])});
-    });
-    for (const auto& [id, marker] : now_.markers()) {
-      if (old_.markers().contains(id) || marker->observations.empty()) continue;
-      const auto living = now_.reanchor({marker->observations.front().keyframe, Se3{}});
-      if (!living) continue;
-      const Se3& correction = corrections_[living->keyframe.index];
-      out.push_back(MoveMarker{id, (correction * marker->world_from_marker).normalized()});
-    }
+    for (EditOperation& move : carry(now_, corrections_, &old_)) out.push_back(std::move(move));
   }
 
   const MapEdit& edit_;
   const Map& old_;
   const Map& now_;
   std::vector<std::optional<Se3>> edited_;  // by keyframe index of the old map
-  std::vector<Se3> corrections_;            // by keyframe index of the present one
+  Corrections corrections_;                 // of the present one
 };
 
 }  // namespace

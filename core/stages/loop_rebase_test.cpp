@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/check.h"
+#include "core/map/carry.h"
 #include "core/map/draft.h"
 #include "core/stages/loop_test_world.h"
 
@@ -107,6 +108,23 @@ class Rebase : public ::testing::TestWithParam<int> {
 TEST_P(Rebase, WithoutChangesTheEditStaysAsItIs) {
   const MapEdit edit = moves_all_by(Se3::exp(draw(rng_, 0.3)));
   EXPECT_EQ(rebase(edit, *old_, map_).hash(), edit.hash());
+}
+
+TEST_P(Rebase, ALandmarkTurnsTheLookItHasByThen) {
+  const Se3 correction = Se3::exp(draw(rng_, 0.3));
+  MapEdit edit;
+  edit.based_on = old_->version();
+  edit.operations = carry(*old_, Corrections(old_->keyframes().index_bound(), correction));
+  const LandmarkId seen_anew = old_->keyframes().find(world_.ids[2])->landmarks[0];
+  Appearance look = old_->landmarks().find(seen_anew)->appearance;
+  look.view_direction = Eigen::Vector3f::UnitX();
+  map_.apply(MapEdit{0, {SetAppearance{seen_anew, look}}});
+  const Snapshot met = map_.snapshot();
+  map_.apply(rebase(edit, *old_, *met));
+  met->landmarks().for_each([&](LandmarkId id, const Landmark& was) {
+    const Eigen::Vector3f expected = correction.rotation().cast<float>() * was.appearance.view_direction;
+    EXPECT_LT((map_.landmarks().find(id)->appearance.view_direction - expected).norm(), 1e-5F);
+  });
 }
 
 TEST_P(Rebase, WhatTheEditMovedStandsWhereItPutItWhateverHappenedSince) {

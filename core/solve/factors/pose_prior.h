@@ -1,8 +1,8 @@
 // Prior on a pose or marker: residual = S log(prior^-1 T), S'S the information in T's own frame (rho, phi).
 #pragma once
 
+#include "core/geometry/se3_jacobian.h"
 #include "core/solve/factors/dense_factor.h"
-#include "core/solve/factors/se3_jacobian.h"
 
 namespace vsgraphs {
 

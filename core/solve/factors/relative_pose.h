@@ -2,8 +2,8 @@
 // frame. Serves pose graphs, odometry and marker observations.
 #pragma once
 
+#include "core/geometry/se3_jacobian.h"
 #include "core/solve/factors/dense_factor.h"
-#include "core/solve/factors/se3_jacobian.h"
 
 namespace vsgraphs {
 

@@ -1,4 +1,4 @@
-#include "core/solve/factors/se3_jacobian.h"
+#include "core/geometry/se3_jacobian.h"
 
 #include <cmath>
 

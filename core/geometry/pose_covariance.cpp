@@ -1,12 +1,21 @@
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "core/base/check.h"
-#include "core/solve/factors/se3_jacobian.h"
+#include "core/geometry/se3_jacobian.h"
 
 namespace vsgraphs {
+
+bool is_covariance(const Matrix6d& matrix) {
+  constexpr double most = 1e6, rounding = 1e-9;
+  if (!(matrix.cwiseAbs().maxCoeff() <= most) || !matrix.allFinite()) return false;
+  if (!(matrix - matrix.transpose()).isZero(rounding)) return false;
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0] >=
+         -rounding;
+}
 
 Matrix6d isotropic_covariance(double sigma_m, double sigma_rad) {
   Vector6d variances;
@@ -34,6 +43,15 @@ Matrix6d compose_covariance(const Matrix6d& of_a_from_b, const Se3& b_from_c, co
 Matrix6d inverted_covariance(const Se3& a_from_b, const Matrix6d& of_a_from_b) {
   const Matrix6d carry = se3_adjoint(a_from_b);
   return carry * of_a_from_b * carry.transpose();
+}
+
+Matrix6d floored(const Matrix6d& covariance, const Matrix6d& floor) {
+  const Vector6d sigmas = floor.diagonal().cwiseSqrt(), per_sigma = sigmas.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(per_sigma.asDiagonal() * covariance *
+                                                     per_sigma.asDiagonal());
+  const Vector6d raised = axes.eigenvalues().cwiseMax(1.0);
+  const Matrix6d half = sigmas.asDiagonal() * axes.eigenvectors();
+  return half * raised.asDiagonal() * half.transpose();
 }
 
 double sigmas_of(const Vector6d& error, const Matrix6d& covariance) {

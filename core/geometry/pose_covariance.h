@@ -6,6 +6,9 @@
 
 namespace vsgraphs {
 
+// Whether it can be one: symmetric and nowhere negative but for rounding, and none of its variances beyond a million.
+bool is_covariance(const Matrix6d& matrix);
+
 // Independent directions, one sigma each way.
 Matrix6d isotropic_covariance(double sigma_m, double sigma_rad);
 
@@ -18,6 +21,9 @@ Matrix6d covariance_of(const Matrix6d& information);
 Matrix6d compose_covariance(const Matrix6d& of_a_from_b, const Se3& b_from_c, const Matrix6d& of_b_from_c);
 // Of b_from_a, given that of a_from_b.
 Matrix6d inverted_covariance(const Se3& a_from_b, const Matrix6d& of_a_from_b);
+
+// The least covariance that is nowhere, in no direction, below either. `floor`: independent directions, all above 0.
+Matrix6d floored(const Matrix6d& covariance, const Matrix6d& floor);
 
 // sqrt(e' C^-1 e): how many standard deviations an error is large. `covariance` as for information_of.
 double sigmas_of(const Vector6d& error, const Matrix6d& covariance);

@@ -1,6 +1,8 @@
-#include "core/solve/pose_covariance.h"
+#include "core/geometry/pose_covariance.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "core/base/check.h"
 #include "core/base/rng.h"
@@ -62,6 +64,36 @@ TEST(PoseCovariance, SigmasCountStandardDeviations) {
   Vector6d error = Vector6d::Zero();
   error[1] = 0.06;
   EXPECT_NEAR(sigmas_of(error, squared(sigmas_b)), 3.0, 1e-12);
+}
+
+TEST(PoseCovariance, AFloorRaisesWhatIsBelowItAndLeavesTheRest) {
+  const Matrix6d floor = isotropic_covariance(0.01, 0.02);
+  Rng rng(4, "pose_covariance_test", 0);
+  Matrix6d root;
+  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = 0.02 * rng.normal();
+  const Matrix6d covariance = root * root.transpose();
+  const Matrix6d raised = floored(covariance, floor);
+  for (int i = 0; i < 200; ++i) {
+    const Vector6d way = draw(rng, Vector6d::Ones());
+    EXPECT_GE(way.dot(raised * way), 0.999999 * way.dot(covariance * way));
+    EXPECT_GE(way.dot(raised * way), 0.999999 * way.dot(floor * way));
+  }
+  EXPECT_TRUE(floored(Matrix6d::Zero(), floor).isApprox(floor, 1e-12));
+  EXPECT_TRUE(floored(4 * floor + covariance, floor).isApprox(4 * floor + covariance, 1e-9));
+}
+
+TEST(PoseCovariance, NotEveryMatrixIsOne) {
+  const Matrix6d good =
+      compose_covariance(isotropic_covariance(0.1, 0.2), b_from_c, isotropic_covariance(3, 1));
+  EXPECT_TRUE(is_covariance(good));
+  EXPECT_TRUE(is_covariance(Matrix6d::Zero()));
+  Matrix6d bad = good;
+  bad(1, 4) += 1e-3;
+  EXPECT_FALSE(is_covariance(bad)) << "not symmetric";
+  EXPECT_FALSE(is_covariance(good - 2 * isotropic_covariance(3, 1))) << "negative";
+  EXPECT_FALSE(is_covariance(1e7 * Matrix6d::Identity()));
+  bad(0, 0) = std::nan("");
+  EXPECT_FALSE(is_covariance(bad));
 }
 
 }  // namespace
