@@ -82,7 +82,7 @@ nb::list similar_places(const SavedAtlas& atlas, std::uint32_t keyframe, std::ui
   for (std::uint32_t index = 0; index + gap <= keyframe; ++index) excluded[index] = 0;
   excluded[keyframe] = 1;
   nb::list similar;
-  for (const PlaceMatch& match : state.places->query(*keyframes.find(id)->features, count, excluded))
+  for (const PlaceMatch& match : state.places()->query(*keyframes.find(id)->features, count, excluded))
     similar.append(nb::make_tuple(match.keyframe.index, match.score));
   return similar;
 }

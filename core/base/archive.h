@@ -44,7 +44,7 @@ class ArchiveWriter {
   template <typename... T>
   void add(const std::string& name, const T&... values) {
     ByteSink sink(&pools_);
-    FieldWriter<ByteSink> write(sink);
+    FieldWriter<ByteSink> write(sink, kind_.version);
     write(values...);
     add_bytes(name, sink.take());
   }

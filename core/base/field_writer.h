@@ -43,15 +43,16 @@ template <typename Sink>
 class FieldWriter {
  public:
   static constexpr bool reads = false;
-  explicit FieldWriter(Sink& sink) : sink_(sink) {}
+  // `version`: of the format that is written.
+  explicit FieldWriter(Sink& sink, std::uint32_t version = UINT32_MAX) : sink_(sink), version_(version) {}
 
   template <typename... T>
   void operator()(const T&... values) {
     (write(values), ...);
   }
   template <typename... T>
-  void since(std::uint32_t, const T&... values) {
-    if constexpr (!requires { Sink::counts_oldest; }) (write(values), ...);
+  void since(std::uint32_t version, const T&... values) {
+    if (version_ >= version) (write(values), ...);
   }
 
  private:
@@ -91,12 +92,12 @@ class FieldWriter {
   }
 
   Sink& sink_;
+  std::uint32_t version_;
 };
 
-// Counts bytes, as the oldest format has them, and keeps none.
+// Counts bytes and keeps none.
 class CountingSink {
  public:
-  static constexpr bool counts_oldest = true;
   void bytes(const void*, std::size_t count) { count_ += count; }
   template <typename T>
   void shared(const std::shared_ptr<const T>&) {
@@ -108,11 +109,11 @@ class CountingSink {
   std::size_t count_ = 0;
 };
 
-// The fewest bytes any value of the type is written in: those of a fresh one, whose containers are empty.
+// The fewest bytes any value of the type is written in, by any version: those of a fresh one, whose containers are empty.
 template <typename T>
 std::size_t least_bytes() {
   CountingSink sink;
-  FieldWriter<CountingSink> count(sink);
+  FieldWriter<CountingSink> count(sink, 0);
   count(T{});
   return sink.count();
 }

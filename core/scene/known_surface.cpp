@@ -18,7 +18,7 @@ MetRays transformed(const MetRays& rays, const Se3& change) {
 }
 
 Eigen::Vector3d mean(const std::map<KeyframeId, SurfacePiece>& pieces, const StretchPoses& stretches,
-                     Eigen::Vector3d SurfacePiece::*sums, int SurfacePiece::*counts) {
+                     Eigen::Vector3d SurfacePiece::* sums, int SurfacePiece::* counts) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
   for (const auto& [stretch, piece] : pieces) {
@@ -155,11 +155,9 @@ bool KnownSurface::pieces_agree(const StretchPoses& stretches) const {
 
 // In the frame of the stretch that saw most of it.
 void KnownSurface::put_together(const StretchPoses& stretches) {
-  reference_ = std::max_element(pieces_.begin(), pieces_.end(),
-                                [](const auto& a, const auto& b) {
-                                  return a.second.patches < b.second.patches;
-                                })
-                   ->first;
+  reference_ = std::max_element(pieces_.begin(), pieces_.end(), [](const auto& a, const auto& b) {
+                 return a.second.patches < b.second.patches;
+               })->first;
   const Se3& world_from_reference = stretches.at(reference_);
   const PlaneFrame frame = pieces_.at(reference_).extent.frame().transformed(world_from_reference);
   extent_ = PlaneExtent(frame);
@@ -181,8 +179,10 @@ void KnownSurface::put_together(const StretchPoses& stretches) {
 
 bool KnownSurface::fits_together() const {
   const auto same_key = [](const auto& a, const auto& b) { return a.first == b.first; };
-  return pieces_.contains(reference_) && std::equal(pieces_.begin(), pieces_.end(), placed_.begin(), placed_.end(), same_key) &&
-         std::all_of(placed_.begin(), placed_.end(), [](const auto& placed) { return is_pose(placed.second); }) &&
+  return pieces_.contains(reference_) &&
+         std::equal(pieces_.begin(), pieces_.end(), placed_.begin(), placed_.end(), same_key) &&
+         std::all_of(placed_.begin(), placed_.end(),
+                     [](const auto& placed) { return is_pose(placed.second); }) &&
          extent_.fits_together() && evidence_.fits_together() &&
          std::all_of(pieces_.begin(), pieces_.end(), [](const auto& piece) {
            return piece.second.extent.fits_together() && piece.second.evidence.fits_together();

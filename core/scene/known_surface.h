@@ -81,8 +81,8 @@ class KnownSurface {
   std::map<KeyframeId, SurfacePiece> pieces_;  // by stretch, in its frame
   PlaneExtent extent_;                         // of all
   PlaneEvidence evidence_;
-  KeyframeId reference_;                     // the stretch with which the whole moves
-  std::map<KeyframeId, Se3> placed_;         // reference_from_stretch, as the whole was put together
+  KeyframeId reference_;              // the stretch with which the whole moves
+  std::map<KeyframeId, Se3> placed_;  // reference_from_stretch, as the whole was put together
   RoleVotes votes_{};
   double largest_m2_ = 0;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();

@@ -10,8 +10,8 @@ namespace vsgraphs {
 
 // visit(cell of `to`, value) for every cell whose value is not the default one.
 template <typename Value>
-void for_moved_cells(const CellGrid<Value>& cells, const PlaneFrame& from, const PlaneFrame& to, double cell_m,
-                     const auto& visit) {
+void for_moved_cells(const CellGrid<Value>& cells, const PlaneFrame& from, const PlaneFrame& to,
+                     double cell_m, const auto& visit) {
   if (cells.empty()) return;
   Eigen::Array2d low = Eigen::Array2d::Constant(1e9), high = -low;
   for (const int s : {cells.min_s(), cells.end_s()}) {

@@ -67,8 +67,7 @@ struct PlaneMerge {
   PlaneId gone, kept;
 };
 std::vector<PlaneMerge> find_merges(const Map& map, const SurfaceKeeper& surfaces,
-                                    const std::set<PlaneId>& touched,
-                                    const PlaneAssociationOptions& options);
+                                    const std::set<PlaneId>& touched, const PlaneAssociationOptions& options);
 
 // Opposite faces back to back within the thickness of a wall, over each other in part. Empty if none fits; the nearest
 // of those that do.

@@ -9,8 +9,8 @@
 namespace vsgraphs {
 namespace {
 
-constexpr double min_behind_m = 0.08, on_sigmas = 3.0, behind_sigmas = 4.0,
-                 min_facing = 0.85, farthest_m = 100.0;
+constexpr double min_behind_m = 0.08, on_sigmas = 3.0, behind_sigmas = 4.0, min_facing = 0.85,
+                 farthest_m = 100.0;
 
 void count_up(std::uint16_t& counter) {
   if (counter < std::numeric_limits<std::uint16_t>::max()) ++counter;
@@ -75,7 +75,7 @@ std::optional<Cell> PlaneEvidence::cell_of(const Eigen::Vector3d& point) const {
 
 MetRays PlaneEvidence::count(const MetRays& rays, bool observes_it) {
   MetRays counted;
-  const Box before = box_;                            // a surface that goes on from it must not draw it along
+  const Box before = box_;  // a surface that goes on from it must not draw it along
   if (!observes_it && before.empty()) return counted;  // not seen yet
   for (const Eigen::Vector3d& point : rays.on) {
     const auto cell = cell_of(point);

@@ -28,7 +28,8 @@ void PlaneExtent::count(const Eigen::Vector3d& point, int change) {
   if (!(c.cwiseAbs().maxCoeff() < farthest_m)) return;
   std::uint16_t& cell = cells_[cell_at(c.x(), c.y(), cell_m)];
   const int before = cell;
-  cell = static_cast<std::uint16_t>(std::clamp(before + change, 0, int{std::numeric_limits<std::uint16_t>::max()}));
+  cell = static_cast<std::uint16_t>(
+      std::clamp(before + change, 0, int{std::numeric_limits<std::uint16_t>::max()}));
   count_ += (cell != 0) - (before != 0);
 }
 
@@ -36,7 +37,8 @@ void PlaneExtent::add(const PlaneExtent& other) {
   for_moved_cells(other.cells_, other.frame_, frame_, cell_m, [this](Cell at, std::uint16_t points) {
     std::uint16_t& cell = cells_[at];
     count_ += cell == 0;
-    cell = static_cast<std::uint16_t>(std::min(cell + points, int{std::numeric_limits<std::uint16_t>::max()}));
+    cell =
+        static_cast<std::uint16_t>(std::min(cell + points, int{std::numeric_limits<std::uint16_t>::max()}));
   });
 }
 

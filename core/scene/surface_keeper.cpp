@@ -50,7 +50,8 @@ class SurfaceKeeper::Following {
     for (const EditOperation& operation : edit.operations)
       std::visit([this](const auto& op) { say(op); }, operation);
     if (!keeper_.shifted_.empty()) keeper_.follow_keyframes(after_);
-    std::erase_if(keeper_.known_, [this](const auto& entry) { return !after_.planes().contains(entry.first); });
+    std::erase_if(keeper_.known_,
+                  [this](const auto& entry) { return !after_.planes().contains(entry.first); });
     for (const KeyframeId id : looking_) keeper_.tell_rays(after_, id);
   }
 
@@ -246,7 +247,8 @@ void SurfaceKeeper::forget(const Map& before, PlaneId plane) {
   if (const MappedPlane* mapped = before.planes().find(plane)) {
     for (const PlaneObservation& o : mapped->observations) {
       const auto told = told_.find(o.keyframe);
-      if (told != told_.end()) std::erase_if(told->second.sights, [&](const Sight& s) { return s.plane == plane; });
+      if (told != told_.end())
+        std::erase_if(told->second.sights, [&](const Sight& s) { return s.plane == plane; });
     }
   }
   known_.erase(plane);

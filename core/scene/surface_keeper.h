@@ -84,7 +84,8 @@ class SurfaceKeeper : public Follower {
   StretchPoses stretches_;
   std::optional<Eigen::Vector3d> up_;  // with which the planes' axes were laid; rays are counted from then on
   std::set<PlaneId> changed_, moved_;
-  std::set<KeyframeId> shifted_;  // stretches that stand elsewhere, or in which a keyframe does, since the edit before
+  std::set<KeyframeId>
+      shifted_;  // stretches that stand elsewhere, or in which a keyframe does, since the edit before
   bool to_interpret_ = false;  // the next edit is what was made of the two
 };
 

@@ -30,7 +30,8 @@ bool is_frame(const PlaneFrame& frame) {
 
 Wrong wrong_with(const KnownSurface& known, const StretchPoses& stretches) {
   if (!known.fits_together()) return "surfaces that do not fit together";
-  if (!is_frame(known.extent().frame()) || !is_frame(known.evidence().frame())) return "a surface that is nowhere";
+  if (!is_frame(known.extent().frame()) || !is_frame(known.evidence().frame()))
+    return "a surface that is nowhere";
   for (const auto& [stretch, piece] : known.pieces()) {
     if (!stretches.contains(stretch)) return "a surface seen from nowhere";
     if (!is_frame(piece.extent.frame()) || !is_frame(piece.evidence.frame()) || piece.keyframes < 0 ||
@@ -44,7 +45,8 @@ Wrong wrong_with(const KnownSurface& known, const StretchPoses& stretches) {
 
 Wrong SurfaceKeeper::wrong_with(const Map& map) const {
   for (const auto& [stretch, pose] : stretches_) {
-    if (map.stretch_of(stretch) != stretch || !is_pose(pose)) return "surfaces of a stretch that does not exist";
+    if (map.stretch_of(stretch) != stretch || !is_pose(pose))
+      return "surfaces of a stretch that does not exist";
   }
   for (const auto& [id, known] : known_) {
     if (!map.planes().contains(id)) return "what is known of a plane that does not exist";
@@ -62,7 +64,8 @@ Wrong SurfaceKeeper::wrong_with(const Map& map) const {
   const auto& all = map.keyframes();
   for (std::uint32_t index = 0; index < all.index_bound(); ++index) {
     const KeyframeId id = all.at_index(index);
-    if (id.valid() && !stretches_.contains(map.stretch_of(id))) return "a stretch of which no surfaces are known";
+    if (id.valid() && !stretches_.contains(map.stretch_of(id)))
+      return "a stretch of which no surfaces are known";
   }
   return up_ && !is_unit(*up_) ? "surfaces of no upward direction" : nullptr;
 }

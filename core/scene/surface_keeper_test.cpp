@@ -35,7 +35,8 @@ class FollowedMap {
   void add_keyframe() {
     const int wall = static_cast<int>(rng_.uniform(0, 3));
     const double x = rng_.uniform(-2, 2), y = 3 + 4 * wall;
-    Keyframe keyframe = keyframe_seeing(camera_, looking({x, y - rng_.uniform(1, 2.5), 1.4}, {x, y, 1.2}), {});
+    Keyframe keyframe =
+        keyframe_seeing(camera_, looking({x, y - rng_.uniform(1, 2.5), 1.4}, {x, y, 1.2}), {});
     if (!living_.empty() && rng_.uniform(0, 1) < 0.7) keyframe.stretch = map.stretch_of(living_.back());
     const KeyframeId id = map.keyframes().next_id();
     apply({AddKeyframe{id, keyframe}});
@@ -60,7 +61,8 @@ class FollowedMap {
     }
     std::vector<EditOperation> operations{SetPatches{id, std::make_shared<const KeyframeSurfaces>(surfaces)}};
     for (std::uint16_t i = 0; i < 2; ++i)
-      operations.push_back(AddPlaneObservation{plane_of(2 * wall + static_cast<int>(rng_.uniform(0, 2))), {id, i}});
+      operations.push_back(
+          AddPlaneObservation{plane_of(2 * wall + static_cast<int>(rng_.uniform(0, 2))), {id, i}});
     apply(std::move(operations));
   }
 
@@ -70,7 +72,8 @@ class FollowedMap {
     const Se3 change = Se3::exp(small_twist(0.5, 0.1));
     std::vector<EditOperation> operations;
     map.keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-      if (keyframe.stretch == stretch) operations.push_back(MoveKeyframe{id, change * keyframe.world_from_camera});
+      if (keyframe.stretch == stretch)
+        operations.push_back(MoveKeyframe{id, change * keyframe.world_from_camera});
     });
     apply(std::move(operations));
   }
@@ -97,7 +100,7 @@ class FollowedMap {
   void remove_plane() { apply({RemovePlane{plane_of(static_cast<int>(rng_.uniform(0, 6)))}}); }
   void forget_patches() { apply({SetPatches{any(), nullptr}}); }
   void do_something() {
-    static constexpr void (FollowedMap::*edits[])() = {
+    static constexpr void (FollowedMap::* edits[])() = {
         &FollowedMap::add_keyframe,    &FollowedMap::add_keyframe,       &FollowedMap::add_keyframe,
         &FollowedMap::move_stretch,    &FollowedMap::move_keyframe,      &FollowedMap::remove_keyframe,
         &FollowedMap::remove_keyframe, &FollowedMap::remove_observation, &FollowedMap::merge,
@@ -106,7 +109,9 @@ class FollowedMap {
   }
 
  private:
-  KeyframeId any() { return living_[static_cast<std::size_t>(rng_.uniform(0, static_cast<double>(living_.size())))]; }
+  KeyframeId any() {
+    return living_[static_cast<std::size_t>(rng_.uniform(0, static_cast<double>(living_.size())))];
+  }
   Vector6d small_twist(double most_m, double most_rad) {
     Vector6d twist;
     for (int i = 0; i < 6; ++i) twist[i] = rng_.uniform(-1, 1) * (i < 3 ? most_m : most_rad);
@@ -141,8 +146,10 @@ void expect_like_gathered(const FollowedMap& followed) {
     EXPECT_EQ(known->keyframes(), right->keyframes());
     EXPECT_NEAR(known->largest_patch_m2(), right->largest_patch_m2(), 1e-6);
     EXPECT_NEAR(static_cast<double>(known->votes()[1]), static_cast<double>(right->votes()[1]), 1e-3);
-    EXPECT_LT((known->mean_camera(followed.keeper.stretches()) - right->mean_camera(anew.stretches())).norm(), 0.05);
-    EXPECT_LT((known->mean_middle(followed.keeper.stretches()) - right->mean_middle(anew.stretches())).norm(), 0.05);
+    EXPECT_LT((known->mean_camera(followed.keeper.stretches()) - right->mean_camera(anew.stretches())).norm(),
+              0.05);
+    EXPECT_LT((known->mean_middle(followed.keeper.stretches()) - right->mean_middle(anew.stretches())).norm(),
+              0.05);
     EXPECT_GT(share_found(known->extent(), right->extent()), 0.97);
     EXPECT_GT(share_found(right->extent(), known->extent()), 0.97);
     EXPECT_NEAR(known->extent().area_m2(), right->extent().area_m2(), 0.15 * right->extent().area_m2() + 0.1);

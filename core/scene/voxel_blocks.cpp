@@ -84,8 +84,7 @@ std::size_t VoxelBlocks::memory_bytes() const {
 }
 
 void VoxelBlocks::drop_empty() {
-  if (std::erase_if(blocks_, [](const Block& block) { return block.empty(); }) > 0)
-    rehash(slots_.size());
+  if (std::erase_if(blocks_, [](const Block& block) { return block.empty(); }) > 0) rehash(slots_.size());
 }
 
 }  // namespace vsgraphs

@@ -68,7 +68,8 @@ void SceneBuilder::find_up_direction(const SurfaceKeeper& surfaces, Draft& draft
     if (known) evidence.area_m2 = known->largest_patch_m2();
     // What the newest keyframe saw stands at the end, and is not known yet.
     if (!plane.observations.empty())
-      evidence.area_m2 = std::max(evidence.area_m2, static_cast<double>(map.patch(plane.observations.back())->area_m2));
+      evidence.area_m2 =
+          std::max(evidence.area_m2, static_cast<double>(map.patch(plane.observations.back())->area_m2));
     found.push_back(evidence);
   });
   const auto up = find_up(std::move(found), image_up);
@@ -121,7 +122,8 @@ bool SceneBuilder::another_is_the_wall(const Map& map, const SurfaceKeeper& surf
     if (found || other_id == id || !theirs) return;
     constexpr double beside_m = 1.0;
     if ((theirs->centre() - known.centre()).norm() > theirs->radius_m() + known.radius_m() + beside_m) return;
-    found = larger_is_the_wall(surface, {other.plane, theirs->evidence()}, options_.association.max_angle_rad);
+    found =
+        larger_is_the_wall(surface, {other.plane, theirs->evidence()}, options_.association.max_angle_rad);
   });
   return found;
 }
@@ -132,8 +134,8 @@ SurfaceRole SceneBuilder::judge(const Map& map, const SurfaceKeeper& surfaces, P
   const Eigen::Vector3d& up = *map.up_in_world();
   const MappedPlane& plane = *map.planes().find(id);
   const KnownSurface& known = *surfaces.find(id);
-  SurfaceRole geometric = role_by_geometry(facts_of(map, plane, known, surfaces.stretches()), known.evidence(),
-                                           up, options_.role);
+  SurfaceRole geometric = role_by_geometry(facts_of(map, plane, known, surfaces.stretches()),
+                                           known.evidence(), up, options_.role);
   const bool called_wall = geometric == SurfaceRole::wall ||
                            (geometric == SurfaceRole::undecided &&
                             votes[static_cast<std::size_t>(SurfaceRole::wall)] >= options_.accepted_votes);
@@ -189,8 +191,7 @@ void SceneBuilder::pair_faces(const std::vector<PlaneId>& candidates, const Surf
 }
 
 // A ray through a door or window crosses no solid cell.
-void SceneBuilder::remove_hidden_landmarks(KeyframeId id, const SurfaceKeeper& surfaces,
-                                           Draft& draft) const {
+void SceneBuilder::remove_hidden_landmarks(KeyframeId id, const SurfaceKeeper& surfaces, Draft& draft) const {
   const Keyframe keyframe = *draft.map().keyframes().find(id);
   const Eigen::Vector3d eye = keyframe.world_from_camera.translation();
   std::vector<LandmarkId> hidden;

@@ -262,7 +262,8 @@ TEST_F(SceneBuilderTest, EqualKeyframesMakeEqualEdits) {
 TEST_F(SceneBuilderTest, WithoutDepthNothingIsProposed) {
   const KeyframeId id = add_keyframe(map, keyframe_seeing(camera, {}, {}));
   EXPECT_THAT(builder.associate(id, map.snapshot(), surfaces, nullptr, nullptr).operations, IsEmpty());
-  EXPECT_THAT(builder.associate(KeyframeId{9, 0}, map.snapshot(), surfaces, nullptr, nullptr).operations, IsEmpty());
+  EXPECT_THAT(builder.associate(KeyframeId{9, 0}, map.snapshot(), surfaces, nullptr, nullptr).operations,
+              IsEmpty());
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ SceneFaces faces_of(const Map& map, const SurfaceKeeper& surfaces, const Se3& le
                  : plane.role == SurfaceRole::ceiling ? &faces.ceilings
                                                       : nullptr;
     if (list)
-      list->push_back(
-          {id, plane.plane.transformed(level_from_world), seen_points(plane, surfaces.find(id), level_from_world)});
+      list->push_back({id, plane.plane.transformed(level_from_world),
+                       seen_points(plane, surfaces.find(id), level_from_world)});
   });
   return faces;
 }

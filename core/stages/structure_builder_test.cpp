@@ -17,16 +17,19 @@ TEST(StructureBuilder, ProposesWhatItSoughtAndKeepsNothingOfTheMap) {
   test::add_keyframe(map, keyframe);
   space.gather(map);
   EXPECT_TRUE(builder.due(0));
-  EXPECT_TRUE(builder.propose(map.snapshot(), space, SurfaceKeeper(), 0, nullptr).operations.empty()) << "no way is up yet";
+  EXPECT_TRUE(builder.propose(map.snapshot(), space, SurfaceKeeper(), 0, nullptr).operations.empty())
+      << "no way is up yet";
   EXPECT_FALSE(builder.due(1));
   EXPECT_TRUE(builder.due(2));
 
-  map.apply(SetUp{-Eigen::Vector3d::UnitY()});
+  map.apply(vsgraphs::SetUp{-Eigen::Vector3d::UnitY()});
   space.catch_up(map, true);
   const MapEdit edit = builder.propose(map.snapshot(), space, SurfaceKeeper(), 2, nullptr);
   ASSERT_EQ(edit.operations.size(), 1U);
   EXPECT_TRUE(std::get<SetStructure>(edit.operations[0]).structure->sought);
-  EXPECT_EQ(StructureBuilder{StructureBuilderOptions{}}.propose(map.snapshot(), space, SurfaceKeeper(), 2, nullptr).hash(),
+  EXPECT_EQ(StructureBuilder{StructureBuilderOptions{}}
+                .propose(map.snapshot(), space, SurfaceKeeper(), 2, nullptr)
+                .hash(),
             edit.hash());
 
   EXPECT_FALSE(builder.due(3));

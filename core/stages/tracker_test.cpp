@@ -10,8 +10,8 @@
 #include "core/base/rng.h"
 #include "core/stages/local_mapper.h"
 #include "core/stages/loop_closer.h"
-#include "core/vision/test_painted_wall.h"
 #include "core/vision/place_keeper.h"
+#include "core/vision/test_painted_wall.h"
 
 namespace vsgraphs {
 namespace {

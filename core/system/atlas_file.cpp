@@ -18,7 +18,8 @@ MapState load_map_state(const ArchiveReader& archive, const std::string& name, c
   MapState state;
   state.map = std::make_shared<const Map>(load_map(archive, name));
   std::vector<std::shared_ptr<Follower>> found;
-  for (const auto& follower : make_followers(Config{}, camera).all()) {
+  const Followers kinds = make_followers(Config{}, camera);
+  for (const auto& follower : kinds.all()) {
     const std::string section = name + "/" + follower->name();
     if (!archive.has(section)) continue;
     follower->load(archive, section);
@@ -72,7 +73,8 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
   std::uint32_t maps = 0;
   archive.read("maps", maps, atlas.map_names);
   load_shared_constants(archive);
-  for (std::uint32_t i = 0; i < maps; ++i) atlas.state.maps.push_back(load_map_state(archive, prefix(i), atlas.camera));
+  for (std::uint32_t i = 0; i < maps; ++i)
+    atlas.state.maps.push_back(load_map_state(archive, prefix(i), atlas.camera));
   if (Wrong wrong = wrong_with_atlas(atlas)) archive.damaged(wrong);
   return atlas;
 }

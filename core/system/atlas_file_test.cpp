@@ -16,7 +16,7 @@ namespace vsgraphs {
 namespace {
 
 MapState gathered(Map& map) {
-  map.apply(SetUp{-Eigen::Vector3d::UnitY()});
+  map.apply(vsgraphs::SetUp{-Eigen::Vector3d::UnitY()});
   const Followers followers = make_followers(Config{}, Camera{});
   followers.start(map, {});
   Followers(followers).catch_up(map, true, [](const char*, const auto& work) { return work(), true; });

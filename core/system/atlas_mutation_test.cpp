@@ -53,7 +53,7 @@ FoundStructure some_structure(PlaneId wall) {
 MapState furnished(const MapState& state) {
   Map map = *state.map;
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
-  map.apply(SetUp{up});
+  map.apply(vsgraphs::SetUp{up});
   PlaneId wall;
   map.planes().for_each([&](PlaneId id, const MappedPlane&) { wall = id; });
   map.apply(ClassifyPlane{wall, SurfaceRole::wall, {}});

@@ -30,6 +30,8 @@ struct SystemOptions {
   int min_map_keyframes = 5;
   bool builds_scene() const { return mode != "slam"; }
   bool builds_structure() const { return mode == "full"; }
+  // Otherwise nobody asks for the schedule, which grows with the run.
+  bool records_schedule() const { return !schedule_out.empty() || !replay.empty(); }
   double max_lag_s = 0.05;
   bool stop_on_fault = stops_on_fault_by_default();
   std::string schedule_out;

@@ -10,7 +10,8 @@ Followers make_followers(const Config& config, const Camera& camera) {
   std::vector<std::shared_ptr<Follower>> all{std::make_shared<PlaceKeeper>(config.places)};
   if (config.system.builds_scene()) all.push_back(std::make_shared<SurfaceKeeper>(camera.depth_noise));
   if (config.system.builds_structure())
-    all.push_back(std::make_shared<SpaceKeeper>(config.structure.free_space, config.structure.max_reintegrations));
+    all.push_back(
+        std::make_shared<SpaceKeeper>(config.structure.free_space, config.structure.max_reintegrations));
   return Followers(std::move(all));
 }
 

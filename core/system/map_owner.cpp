@@ -128,7 +128,8 @@ void MapOwner::look_for_loop() {
   const Span span(&spans_, "look_for_loop");
   guard_.run("loops", [&] {
     LoopReport report;
-    if (auto edit = loop_closer_.close(newest_, snapshot_, *followers_.find<PlaceKeeper>()->places(), report, &spans_))
+    if (auto edit = loop_closer_.close(newest_, snapshot_, *followers_.find<PlaceKeeper>()->places(), report,
+                                       &spans_))
       loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
     tally(tallies_.loops, report, *snapshot_);
   });
@@ -210,8 +211,8 @@ void MapOwner::find_rooms(bool last) {
   }
   const bool found = guard_.run("rooms", [&] {
     const Span span(&scene_spans_, "find_structure");
-    edit = structure_.propose(snapshot_, *followers_.find<SpaceKeeper>(), *followers_.find<SurfaceKeeper>(), newest_s_,
-                              &scene_spans_);
+    edit = structure_.propose(snapshot_, *followers_.find<SpaceKeeper>(), *followers_.find<SurfaceKeeper>(),
+                              newest_s_, &scene_spans_);
   });
   if (!found) return;
   apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
@@ -234,8 +235,10 @@ void MapOwner::apply(const MapEdit& edit, EditEvent event, const Followers* abso
     const Span span(&spans_, "follow_edit");
     followers_.follow(*before, edit, *snapshot_, absorbed, guarded());
   }
-  event.hash = edit.hash();
-  edits_.push_back(event);
+  if (options_.records_schedule()) {
+    event.hash = edit.hash();
+    edits_.push_back(event);
+  }
   publish();
 }
 

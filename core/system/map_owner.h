@@ -128,7 +128,7 @@ class MapOwner {
   Followers new_followers_;  // of an empty map
   Followers followers_;
   KeyframeId looked_at_;  // whose planes were sought last
-  int made_ = 0;  // keyframes of this run in the map worked on
+  int made_ = 0;          // keyframes of this run in the map worked on
   bool loaded_ = false;
   std::vector<DormantMap> dormant_;  // oldest first
   std::shared_ptr<const std::vector<MapState>> published_dormant_;

@@ -76,8 +76,7 @@ void MapOwner::put_to_sleep() {
   const std::uint32_t age = first_index(*snapshot_);
   const auto behind = std::find_if(dormant_.begin(), dormant_.end(),
                                    [&](const DormantMap& d) { return first_index(*d.state.map) > age; });
-  dormant_.insert(behind,
-                  {{snapshot_, followers_}, made_, loaded_, adjustment_ != nullptr});
+  dormant_.insert(behind, {{snapshot_, followers_}, made_, loaded_, adjustment_ != nullptr});
   drop_adjustment();
 }
 

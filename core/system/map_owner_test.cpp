@@ -12,6 +12,13 @@ namespace {
 
 using namespace test;
 
+// Of which a schedule is kept; no file is written here.
+Config recorded() {
+  Config config;
+  config.system.schedule_out = "schedule";
+  return config;
+}
+
 class MapOwnerTest : public ::testing::Test {
  protected:
   // A keyframe that looks at the grid from `x`; the first one starts the map.
@@ -30,7 +37,7 @@ class MapOwnerTest : public ::testing::Test {
   Camera camera_;
   Points points_ = point_grid(6, 5);
   SnapshotCell cell_;
-  MapOwner owner_{Config{}, camera_, cell_};
+  MapOwner owner_{recorded(), camera_, cell_};
 };
 
 TEST_F(MapOwnerTest, BeginsWithAnEmptyMapForAllToSee) {
@@ -67,7 +74,7 @@ TEST_F(MapOwnerTest, EveryStepIsAVersionAnEventAndASnapshot) {
 
 TEST_F(MapOwnerTest, EqualRequestsMakeEqualEdits) {
   SnapshotCell other_cell;
-  MapOwner other(Config{}, camera_, other_cell);
+  MapOwner other(recorded(), camera_, other_cell);
   const KeyframeRequest first = request(0, 0);
   owner_.insert(first);
   const KeyframeRequest second = request(9, 0.2);
@@ -79,6 +86,14 @@ TEST_F(MapOwnerTest, EqualRequestsMakeEqualEdits) {
   EXPECT_EQ(owner_.edits(), other.edits());
 }
 
+TEST_F(MapOwnerTest, NoScheduleIsKeptThatNobodyAskedFor) {
+  SnapshotCell cell;
+  MapOwner owner(Config{}, camera_, cell);
+  owner.insert(request(0, 0));
+  EXPECT_EQ(owner.version(), 1U);
+  EXPECT_TRUE(owner.edits().empty());
+}
+
 TEST_F(MapOwnerTest, RefiningStopsWhenToldAndSaysHowFarItCame) {
   owner_.insert(request(0, 0));
   owner_.insert(request(9, 0.2));
@@ -88,7 +103,7 @@ TEST_F(MapOwnerTest, RefiningStopsWhenToldAndSaysHowFarItCame) {
 
 // Labels of another size than the image's samples are a defect that planes cannot survive.
 TEST_F(MapOwnerTest, WhatFailsIsSwitchedOffAndMappingGoesOn) {
-  Config config;
+  Config config = recorded();
   config.system.stop_on_fault = false;
   SnapshotCell cell;
   MapOwner owner(config, camera_, cell);

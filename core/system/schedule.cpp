@@ -15,13 +15,13 @@ namespace vsgraphs {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, EditEvent::Kind>, 13> kinds = {{
+constexpr std::array<std::pair<const char*, EditEvent::Kind>, 14> kinds = {{
     {"insert", EditEvent::Kind::insert},
     {"planes", EditEvent::Kind::planes},
     {"labels", EditEvent::Kind::labels},
+    {"roles", EditEvent::Kind::roles},
     {"markers", EditEvent::Kind::markers},
     {"rooms", EditEvent::Kind::rooms},
-    {"roles", EditEvent::Kind::roles},
     {"rooms_last", EditEvent::Kind::rooms_last},
     {"loop", EditEvent::Kind::loop},
     {"adjust", EditEvent::Kind::adjust},

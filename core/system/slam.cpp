@@ -162,8 +162,9 @@ AtlasState Slam::atlas_state() const {
   const SnapshotCell::Content content = executor_->content();
   AtlasState state{*content.dormant, loaded_};
   if (content.snapshot->keyframes().size() > 0)
-    state.maps.push_back({content.snapshot, ended_ ? executor_->followers()
-                                                 : Followers({std::make_shared<PlaceKeeper>(content.places)})});
+    state.maps.push_back(
+        {content.snapshot,
+         ended_ ? executor_->followers() : Followers({std::make_shared<PlaceKeeper>(content.places)})});
   return state;
 }
 

@@ -272,8 +272,7 @@ TEST(LocaliseOnly, NeedsAMap) {
   config.set("system.localise_only", true);
   EXPECT_THROW(Slam(config, small_camera()), InputError);
   Map empty;
-  EXPECT_THROW(Slam(config, small_camera(), AtlasState{{{empty.snapshot(), {}}}, {}}),
-               InputError);
+  EXPECT_THROW(Slam(config, small_camera(), AtlasState{{{empty.snapshot(), {}}}, {}}), InputError);
 }
 
 }  // namespace

@@ -37,8 +37,22 @@ void SpanRecorder::end() {
   open_.pop_back();
   const std::int64_t wall = now_ns(CLOCK_MONOTONIC) - open.begin_ns;
   const std::int64_t cpu = now_ns(CLOCK_THREAD_CPUTIME_ID) - open.cpu_ns;
-  spans_.push_back({open.name, open.begin_ns / 1000, wall / 1000, static_cast<float>(cpu) * 1e-6f,
-                    static_cast<float>(wall) * 1e-6f, frame_});
+  const float wall_ms = static_cast<float>(wall) * 1e-6f;
+  Total& total = totals_[open.name];
+  ++total.count;
+  total.longest_ms = std::max(total.longest_ms, wall_ms);
+  if (frame_ % every_ != 0) return;
+  spans_.push_back(
+      {open.name, open.begin_ns / 1000, wall / 1000, static_cast<float>(cpu) * 1e-6f, wall_ms, frame_});
+  if (spans_.size() > capacity_) thin_out();
+}
+
+void SpanRecorder::thin_out() {
+  every_ *= 2;
+  std::erase_if(spans_, [this](const SpanRecord& span) { return span.frame % every_ != 0; });
+  // Where all were of frames that stay, the older half goes.
+  if (spans_.size() > capacity_)
+    spans_.erase(spans_.begin(), spans_.begin() + static_cast<std::ptrdiff_t>(spans_.size() / 2));
 }
 
 std::map<std::string, StageStatistics> stage_statistics(const std::vector<const SpanRecorder*>& recorders) {
@@ -56,12 +70,17 @@ std::map<std::string, StageStatistics> stage_statistics(const std::vector<const 
   std::map<std::string, StageStatistics> result;
   for (auto& [name, s] : samples) {
     StageStatistics& out = result[name];
-    out.count = static_cast<std::int64_t>(s.wall.size());
-    out.max_ms = static_cast<double>(*std::max_element(s.wall.begin(), s.wall.end()));
     out.median_ms = percentile(s.wall, 0.5);
     out.p95_ms = percentile(s.wall, 0.95);
     out.cpu_median_ms = percentile(s.cpu, 0.5);
     out.cpu_p95_ms = percentile(s.cpu, 0.95);
+  }
+  for (const SpanRecorder* recorder : recorders) {
+    for (const auto& [name, total] : recorder->totals()) {
+      StageStatistics& out = result[name];
+      out.count += total.count;
+      out.max_ms = std::max(out.max_ms, static_cast<double>(total.longest_ms));
+    }
   }
   return result;
 }

@@ -19,23 +19,36 @@ struct SpanRecord {
   std::int64_t frame;
 };
 
-// One per thread ("lane"); not shared while spans are open.
+// One per thread ("lane"); not shared while spans are open. Memory is bounded: of a long run it keeps the spans of every second
+// frame, then of every fourth, ...; how many there were and the longest are counted over all.
 class SpanRecorder : public TraceSink {
  public:
-  explicit SpanRecorder(std::string lane) : lane_(std::move(lane)) {}
+  struct Total {
+    std::int64_t count = 0;
+    float longest_ms = 0;
+  };
+  // `capacity`: spans kept, 40 bytes each.
+  explicit SpanRecorder(std::string lane, std::size_t capacity = 100'000)
+      : lane_(std::move(lane)), capacity_(capacity) {}
   void set_frame(std::int64_t frame) { frame_ = frame; }
   void begin(const char* name) override;
   void end() override;
 
   const std::string& lane() const { return lane_; }
   const std::vector<SpanRecord>& spans() const { return spans_; }
+  const std::map<std::string, Total>& totals() const { return totals_; }
 
  private:
+  void thin_out();
+
   struct Open {
     const char* name;
     std::int64_t begin_ns, cpu_ns;
   };
   std::string lane_;
+  std::size_t capacity_;
+  std::int64_t every_ = 1;  // frames of which spans are kept
+  std::map<std::string, Total> totals_;
   std::int64_t frame_ = 0;
   std::vector<Open> open_;
   std::vector<SpanRecord> spans_;

@@ -80,5 +80,30 @@ TEST(SpanRecorder, NoSpansNoStatistics) {
   EXPECT_TRUE(stage_statistics({}).empty());
 }
 
+TEST(SpanRecorder, ALongRunKeepsSpansOfFewerFramesAndCountsThemAll) {
+  SpanRecorder recorder("lane", 64);
+  for (int frame = 0; frame < 1000; ++frame) {
+    recorder.set_frame(frame);
+    for (const char* name : {"track", "match"}) {
+      recorder.begin(name);
+      recorder.end();
+    }
+  }
+  EXPECT_LE(recorder.spans().size(), 64U);
+  EXPECT_GT(recorder.spans().size(), 20U);
+  EXPECT_EQ(recorder.spans().front().frame, 0) << "evenly over the whole run";
+  EXPECT_GT(recorder.spans().back().frame, 900);
+  EXPECT_EQ(stage_statistics({&recorder}).at("track").count, 1000);
+}
+
+TEST(SpanRecorder, ManySpansOfOneFrameAreBoundedToo) {
+  SpanRecorder recorder("lane", 64);
+  for (int i = 0; i < 1000; ++i) {
+    recorder.begin("track");
+    recorder.end();
+  }
+  EXPECT_LE(recorder.spans().size(), 64U);
+}
+
 }  // namespace
 }  // namespace vsgraphs

@@ -16,6 +16,7 @@ class TrackingLane {
  public:
   TrackingLane(const Config& config, const Camera& camera)
       : localise_only_(config.system.localise_only),
+        records_schedule_(config.system.records_schedule()),
         tracker_(tracker_options(config), config.orb, camera, static_cast<std::uint64_t>(config.system.seed)),
         spans_("tracking") {}
 
@@ -29,7 +30,7 @@ class TrackingLane {
       result = tracker_.track(frame, known, static_cast<int>(requested_ - content.inserted), &spans_);
     }
     if (localise_only_) result.keyframe_request.reset();
-    frames_.push_back({frame.index, frame.timestamp_s, content.snapshot->version()});
+    if (records_schedule_) frames_.push_back({frame.index, frame.timestamp_s, content.snapshot->version()});
     if (result.keyframe_request) ++requested_;
     return result;
   }
@@ -45,7 +46,7 @@ class TrackingLane {
     return options;
   }
 
-  bool localise_only_;
+  bool localise_only_, records_schedule_;
   Tracker tracker_;
   SpanRecorder spans_;
   std::vector<FrameEvent> frames_;

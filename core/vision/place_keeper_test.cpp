@@ -23,7 +23,8 @@ class FollowedPlaces {
   }
   void add() {
     const KeyframeId id = map.keyframes().next_id();
-    apply({AddKeyframe{id, keyframe_seeing(Camera{}, standing_at(0), point_grid(6, 5), static_cast<int>(30 * id.index))}});
+    apply({AddKeyframe{
+        id, keyframe_seeing(Camera{}, standing_at(0), point_grid(6, 5), static_cast<int>(30 * id.index))}});
     living.push_back(id);
   }
   void remove(std::size_t number) {
@@ -59,8 +60,10 @@ TEST(PlaceKeeper, HoldsTheLivingKeyframesWhateverIsDone) {
     other.apply({OpenMap{{64, 64, 64}, 0}});
     for (int i = 0; i < 30; ++i) {
       FollowedPlaces& one = rng.uniform() < 0.4 + 0.1 * static_cast<double>(seed % 3) ? followed : other;
-      if (rng.uniform() < 0.7) one.add();
-      else one.remove(rng.index(30));
+      if (rng.uniform() < 0.7)
+        one.add();
+      else
+        one.remove(rng.index(30));
     }
     followed.expect_complete();
     followed.apply({AbsorbMap{std::make_shared<const Map>(other.map), standing_at(3)}}, &other.keeper);

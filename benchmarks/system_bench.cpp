@@ -1,0 +1,123 @@
+// What a keyframe costs in a map that grows: nothing of it may hang on all that was ever seen. CPU time of one thread.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "core/map/test_map.h"
+#include "core/scene/space_keeper.h"
+#include "core/scene/test_surfaces.h"
+#include "core/solve/window.h"
+#include "core/stages/scene_builder.h"
+#include "core/system/atlas_file.h"
+#include "core/system/followers.h"
+#include "core/system/map_owner.h"
+
+namespace vsgraphs {
+namespace {
+
+// A corridor of four planes that the camera goes up and down, 0.25 m from keyframe to keyframe.
+class Corridor {
+ public:
+  Corridor() { apply({map_.version(), {vsgraphs::SetUp{Eigen::Vector3d::UnitZ()}}}); }
+
+  int size() const { return static_cast<int>(map_.keyframes().index_bound()); }
+  Map& map() { return map_; }
+  const Followers& followers() const { return followers_; }
+
+  // Without planes yet.
+  KeyframeId go_on() {
+    constexpr int one_way = 240;
+    const int i = size();
+    const bool back = i / one_way % 2 == 1;
+    const int along = i % one_way;
+    const double x = 0.25 * (back ? one_way - along : along);
+    const Se3 pose =
+        test::looking({x, 0.05 * (i % 3), 1.4}, {x + (back ? -2.0 : 2.0), i % 2 ? 0.8 : -0.8, 1.1});
+    Keyframe keyframe = test::keyframe_seeing(camera_, pose, {});
+    keyframe.frame_index = i;
+    keyframe.surface = std::make_shared<const DepthGrid>(test::view(world_, pose, camera_));
+    if (i % 60 != 0) keyframe.stretch = map_.stretch_of(newest_);
+    newest_ = map_.keyframes().next_id();
+    apply({map_.version(), {AddKeyframe{newest_, keyframe}}});
+    return newest_;
+  }
+  // All that a keyframe brings about with planes: seen, associated, followed, judged, and their part of a window.
+  void understand() {
+    const SurfaceKeeper& surfaces = *followers_.find<SurfaceKeeper>();
+    apply(builder_.associate(newest_, map_.snapshot(), surfaces, nullptr, nullptr));
+    apply(builder_.interpret(newest_, map_.snapshot(), surfaces, nullptr));
+    Window window;
+    for (std::uint32_t back = 0; back < 25; ++back)
+      (back < 15 ? window.free : window.fixed).push_back(map_.keyframes().at_index(newest_.index - back));
+    benchmark::DoNotOptimize(build_problem(map_, window, {camera_, 1.2, {}}));
+  }
+  void carve() { followers_.catch_up(map_, false, run); }
+
+ private:
+  static bool run(const char*, const std::function<void()>& work) { return work(), true; }
+  void apply(const MapEdit& edit) {
+    const Snapshot before = map_.snapshot();
+    map_.apply(edit);
+    followers_.follow(*before, edit, map_, nullptr, run);
+  }
+
+  Camera camera_;
+  test::World world_ = test::World().room({-6, -1, 0}, {66, 1, 2.5});
+  Map map_;
+  Followers followers_ = make_followers(Config{}, camera_);
+  SceneBuilder builder_{SceneBuilderOptions{}, camera_};
+  KeyframeId newest_;
+};
+
+// One corridor for all sizes, which are asked for in ascending order.
+Corridor& corridor(int keyframes) {
+  static Corridor corridor;
+  while (corridor.size() < keyframes) {
+    corridor.go_on();
+    if (corridor.size() > 25) corridor.understand();
+    if (corridor.size() % 8 == 0) corridor.carve();
+  }
+  return corridor;
+}
+
+void BM_planes_of_a_keyframe(benchmark::State& state) {
+  Corridor& map = corridor(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    state.PauseTiming();
+    map.go_on();
+    state.ResumeTiming();
+    map.understand();
+  }
+}
+BENCHMARK(BM_planes_of_a_keyframe)
+    ->Arg(250)
+    ->Arg(500)
+    ->Arg(1000)
+    ->Arg(2000)
+    ->Iterations(40)
+    ->Unit(benchmark::kMillisecond);
+
+void BM_space_of_a_keyframe(benchmark::State& state) {
+  Corridor& map = corridor(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    state.PauseTiming();
+    map.go_on();
+    state.ResumeTiming();
+    map.carve();
+  }
+}
+BENCHMARK(BM_space_of_a_keyframe)->Arg(2100)->Iterations(40)->Unit(benchmark::kMillisecond);
+
+// What a run waits for before its first frame when it goes on in an atlas: all followers come with it.
+void BM_start_from_an_atlas(benchmark::State& state) {
+  Corridor& made = corridor(static_cast<int>(state.range(0)));
+  const AtlasState known{{{made.map().snapshot(), made.followers().copy()}}, {}};
+  for (auto _ : state) {
+    SnapshotCell cell;
+    benchmark::DoNotOptimize(MapOwner(Config{}, Camera{}, cell, known).version());
+  }
+}
+BENCHMARK(BM_start_from_an_atlas)->Arg(3000)->Iterations(5)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace vsgraphs
