@@ -130,26 +130,42 @@ TEST(AtlasFile, TheSameContentIsTheSameRevision) {
   EXPECT_NE(one.state.loaded.revision, read_atlas("FILE", bytes_of(other)).state.loaded.revision);
 }
 
-// A file of before there were lineages.
-Bytes of_format_1(const Bytes& bytes) {
-  const ArchiveReader archive("FILE", bytes, atlas_kind);
-  ArchiveWriter older({atlas_kind.magic, 1, atlas_kind.what});
+// As earlier versions wrote it, of a run that only locates the camera.
+Bytes of_format(std::uint32_t version, SavedAtlas atlas) {
+  for (MapState& state : atlas.state.maps)
+    state.followers = Followers({std::make_shared<PlaceKeeper>(state.places())});
+  const ArchiveKind kind{atlas_kind.magic, version, atlas_kind.what};
+  ArchiveWriter writer(kind);
+  write_atlas(writer, atlas);
+  const Bytes bytes = test::joined(writer.finish());
+  const ArchiveReader archive("FILE", bytes, kind);
+  ArchiveWriter older(kind);
   for (const std::string& name : archive.names()) {
-    if (name != "lineage")
+    if (name != "lineage" || version > 1)  // there were none at first
       older.add_bytes(name, {archive.section(name).begin(), archive.section(name).end()});
   }
   return test::joined(older.finish());
 }
 
 TEST(AtlasFile, FilesOfFormat1BeginALine) {
-  const Bytes old = of_format_1(bytes_of(some_atlas()));
+  const Bytes old = of_format(1, some_atlas());
   const SavedAtlas atlas = read_atlas("FILE", old);
   EXPECT_EQ(atlas.format, 1U);
   EXPECT_EQ(atlas.state.loaded, (AtlasVersion{archive_identity(old), archive_identity(old)}));
   const SavedAtlas again = read_atlas("FILE", bytes_of(atlas));
-  EXPECT_EQ(again.format, 2U);
+  EXPECT_EQ(again.format, 3U);
   EXPECT_EQ(again.parent, atlas.state.loaded);
   EXPECT_EQ(again.state.loaded.lineage, atlas.state.loaded.lineage);
+}
+
+TEST(AtlasFile, KeyframesOfFormat2AreCutIntoStretches) {
+  const SavedAtlas atlas = read_atlas("FILE", of_format(2, some_atlas()));
+  EXPECT_EQ(atlas.format, 2U);
+  const Map& map = *atlas.state.maps[1].map;
+  const KeyframeId first = map.retired_keyframes().at_index(64);
+  for (std::uint32_t index = 64; index < map.retired_keyframes().index_bound(); ++index)
+    EXPECT_EQ(map.stretch_of(map.retired_keyframes().at_index(index)), first);
+  EXPECT_EQ(error_of(bytes_of(atlas)), "");
 }
 
 TEST(AtlasFile, RevisionsAreReadOffTheFile) {
