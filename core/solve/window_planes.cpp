@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 
 #include "core/solve/condense_observations.h"
 #include "core/solve/factors/plane_observation.h"
@@ -47,16 +46,14 @@ class PlaneGathering {
     outside_.clear();
     free_ = false;
     if (only_observer_of(plane).valid()) return false;
-    KeyframeId stretch;
-    std::size_t first = 0;
-    for (std::size_t i = 0; i <= plane.observations.size(); ++i) {
-      const bool ends = i == plane.observations.size();
-      const KeyframeId here = ends ? KeyframeId{} : map_.stretch_of(plane.observations[i].keyframe);
-      if (!ends && here == stretch) continue;
-      take(std::span(plane.observations).subspan(first, i - first), near_.contains(stretch));
-      stretch = here;
-      first = i;
+    far_.clear();
+    for (const PlaneObservation& o : plane.observations) {
+      if (near_.contains(map_.stretch_of(o.keyframe)))
+        take(o, 1);
+      else
+        far_.push_back(&o);
     }
+    take_far();
     return free_ || wanted;
   }
   const std::vector<SeenByPose>& inside() const { return inside_; }
@@ -71,14 +68,13 @@ class PlaneGathering {
   }
 
  private:
-  // What the keyframes of one stretch saw of it, one after the other. From outside the window some of them say what all do, each
-  // for its neighbours: keyframes of a stretch see a plane from much the same place, and what a window costs must not grow with
-  // all that was ever seen.
-  void take(std::span<const PlaneObservation> observations, bool near) {
-    constexpr std::size_t enough = 8;
-    const std::size_t step = near ? 1 : 1 + (observations.size() - 1) / enough;
-    for (std::size_t i = 0; i < observations.size(); i += step)
-      take(observations[i], static_cast<double>(std::min(step, observations.size() - i)));
+  // Of what was seen of it in other stretches, some speak for all, each for its neighbours in time: they saw it from much the same
+  // place, and what a window costs must not grow with all that was ever seen.
+  void take_far() {
+    constexpr std::size_t enough = 64;
+    const std::size_t step = 1 + far_.size() / enough;
+    for (std::size_t i = 0; i < far_.size(); i += step)
+      take(*far_[i], static_cast<double>(std::min(step, far_.size() - i)));
   }
   void take(const PlaneObservation& o, double weight) {
     const SurfacePatch* patch = map_.patch(o);
@@ -101,6 +97,7 @@ class PlaneGathering {
   const WindowProblem& problem_;
   std::vector<int> pose_of_;
   std::set<KeyframeId> near_;  // stretches with a keyframe in the window
+  std::vector<const PlaneObservation*> far_;
   bool free_ = false;
   std::vector<SeenByPose> inside_;
   std::vector<WeightedPlane> outside_;

@@ -15,8 +15,6 @@ using namespace test;
 // Tracking and the map's owner by hand, so that an adjustment of the whole map can be let come late.
 class StepByStep {
  public:
-  StepByStep() : config_(configured("serial")) {}
-
   void see(int px) { track(scene_.seen_from(px)); }
   void walk(int from_px, int to_px) {
     const int step = from_px < to_px ? 8 : -8;
@@ -46,7 +44,13 @@ class StepByStep {
     if (result.keyframe_request) owner_.work_on(*result.keyframe_request, {});
   }
 
-  Config config_;
+  static Config recorded() {
+    Config config = configured("serial");
+    config.system.schedule_out = "schedule";  // kept, not written
+    return config;
+  }
+
+  Config config_ = recorded();
   WallScene scene_;
   SnapshotCell cell_;
   TrackingLane tracking_{config_, small_camera()};
