@@ -90,7 +90,7 @@ struct KeptMap {
   // All depth there ever was but of what was replaced, carved where the keyframes stand now.
   FreeSpace anew() const {
     FreeSpace space(keeper->options());
-    const Se3 level_from_world = levelling(*map.up_in_world());
+    const Se3 level_from_world = levelling(map);
     for (const auto& [id, depth] : depths) {
       const RetiredKeyframe* retired = map.retired_keyframes().find(id);
       if (!retired || retired->replaced) continue;

@@ -18,7 +18,7 @@ struct SpaceKeeper::Moved {
 void SpaceKeeper::catch_up(const Map& map, bool all) {
   work_ = {};
   if (!map.up_in_world()) return;
-  const Se3 level_from_world = levelling(*map.up_in_world());
+  const Se3 level_from_world = levelling(map);
   find_new(map);
   forget_replaced();
   put_in_place(map, level_from_world, all);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/se3.h"
+#include "core/map/map.h"
 
 namespace vsgraphs {
 
@@ -29,7 +30,9 @@ struct UpDirectionOptions {
 std::optional<Eigen::Vector3d> find_up(std::vector<UprightEvidence> surfaces, const Eigen::Vector3d& image_up,
                                        const UpDirectionOptions& options = {});
 
-// Turns `up` to z, about the world's origin.
-Se3 levelling(const Eigen::Vector3d& up_in_world);
+// Turns the map's `up`, which it must know, to z, about the world's origin. Where rooms were sought before it turns from their
+// level frame the shortest way: a map that began with the camera looking straight down would otherwise spin about the plumb line
+// with every small correction of `up`.
+Se3 levelling(const Map& map);
 
 }  // namespace vsgraphs

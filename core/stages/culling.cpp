@@ -28,6 +28,11 @@ void Probation::judge(const CullingOptions& options, std::int64_t keyframe_count
   entries_ = std::move(remaining);
 }
 
+void Probation::take_up(const Probation& others, std::int64_t their_count, std::int64_t keyframe_count) {
+  for (const Entry& entry : others.entries_)
+    entries_.push_back({entry.landmark, entry.born + keyframe_count - their_count});
+}
+
 namespace {
 
 // Who sees a landmark at the same or a finer scale.

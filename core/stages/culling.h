@@ -47,6 +47,8 @@ class Probation {
   void admit(const std::vector<LandmarkId>& landmarks, std::int64_t keyframe_count);
   // Removes those that failed, releases those that passed.
   void judge(const CullingOptions& options, std::int64_t keyframe_count, Draft& draft);
+  // Those of another map on top, which were as old by its `their_count` as they are by `keyframe_count` from now on.
+  void take_up(const Probation& others, std::int64_t their_count, std::int64_t keyframe_count);
 
  private:
   struct Entry {

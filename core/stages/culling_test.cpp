@@ -78,6 +78,18 @@ TEST_F(ProbationTest, WhoPassedIsNotJudgedAgain) {
   EXPECT_TRUE(other.map().landmarks().contains(id)) << "released at an age of 3";
 }
 
+TEST_F(ProbationTest, GoesOnWhereItWasWhenItsMapIsTakenUpAgain) {
+  const LandmarkId id = add(1, 1, 1);
+  Probation away, here;
+  away.admit({id}, 10);
+  here.take_up(away, 11, 500);  // one keyframe old by then
+  Draft draft(map_.snapshot());
+  here.judge(options_, 500, draft);
+  EXPECT_TRUE(draft.map().landmarks().contains(id)) << "still young";
+  here.judge(options_, 501, draft);
+  EXPECT_FALSE(draft.map().landmarks().contains(id)) << "thinly observed when its time is up";
+}
+
 TEST_F(ProbationTest, VanishedLandmarksAreForgotten) {
   const LandmarkId merged = add(3, 1, 1), into = add(3, 1, 1);
   Probation probation;

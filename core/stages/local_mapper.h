@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "core/base/options.h"
 #include "core/base/trace.h"
@@ -56,6 +57,16 @@ class LocalMapper {
   // done goes to `report`.
   MapEdit refine(KeyframeId keyframe, const Snapshot& snapshot, const std::function<bool()>& stop,
                  SolveReport& report, TraceSink* trace);
+
+  // The young landmarks of a map, for the time that another one is worked on.
+  struct Young {
+    Probation probation;
+    std::int64_t keyframe_count = 0;
+  };
+  Young put_away() { return {std::exchange(probation_, {}), keyframe_count_}; }
+  void take_up(const Young& young) {
+    probation_.take_up(young.probation, young.keyframe_count, keyframe_count_);
+  }
 
  private:
   void take_over_observations(const KeyframeRequest& request, KeyframeId keyframe, Draft& draft);

@@ -12,7 +12,8 @@ namespace {
 
 class Rebaser {
  public:
-  Rebaser(const MapEdit& edit, const Map& old_map, const Map& now) : edit_(edit), old_(old_map), now_(now) {
+  Rebaser(const MapEdit& edit, const Map& old_map, const Map& now, const std::vector<Se3>& moved)
+      : edit_(edit), old_(old_map), now_(now), moved_(moved) {
     edited_.resize(old_.keyframes().index_bound());
     for (const EditOperation& operation : edit.operations) {
       const auto* move = std::get_if<MoveKeyframe>(&operation);
@@ -39,7 +40,9 @@ class Rebaser {
   Se3 correction_of(KeyframeId id, const Keyframe& keyframe) const {
     if (old_.keyframes().contains(id)) {
       const auto& edited = edited_[id.index];
-      return edited ? *edited * keyframe.world_from_camera.inverse() : Se3{};
+      if (!edited) return Se3{};
+      const Se3 by_loops = id.index < moved_.size() ? moved_[id.index] : Se3{};
+      return by_loops * *edited * keyframe.world_from_camera.inverse();
     }
     return corrections_[anchor_of_new(id, keyframe).index];
   }
@@ -154,15 +157,16 @@ class Rebaser {
   const MapEdit& edit_;
   const Map& old_;
   const Map& now_;
+  const std::vector<Se3>& moved_;
   std::vector<std::optional<Se3>> edited_;  // by keyframe index of the old map
   Corrections corrections_;                 // of the present one
 };
 
 }  // namespace
 
-MapEdit rebase(const MapEdit& edit, const Map& old_map, const Map& now) {
+MapEdit rebase(const MapEdit& edit, const Map& old_map, const Map& now, const std::vector<Se3>& moved) {
   if (edit.based_on == now.version()) return edit;
-  return Rebaser(edit, old_map, now).run();
+  return Rebaser(edit, old_map, now, moved).run();
 }
 
 }  // namespace vsgraphs

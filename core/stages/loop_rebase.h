@@ -1,6 +1,8 @@
 // An edit worked out on an old version of the map, said anew for the version it meets.
 #pragma once
 
+#include <vector>
+
 #include "core/map/map.h"
 
 namespace vsgraphs {
@@ -11,9 +13,10 @@ namespace vsgraphs {
 // keyframe it hangs on (tracked link, else most shared landmarks). Ids that were merged away are followed, those that
 // vanished drop out; rooms that were found or moved since stay where they are.
 //
-// If nothing has happened since, the edit is returned as it is. The edit may move, merge, remove, observe and classify; it
+// `moved`, by keyframe index, is what loops have moved keyframes by since, world from world (empty: nothing): what the edit put
+// somewhere it would have put there. If nothing has happened since, the edit is returned as it is. The edit may move, merge, remove, observe and classify; it
 // must not add keyframes, landmarks, planes or markers, as their ids may have been given away (throws InvariantError).
 // Cost: linear in the map and the edit.
-MapEdit rebase(const MapEdit& edit, const Map& old_map, const Map& now);
+MapEdit rebase(const MapEdit& edit, const Map& old_map, const Map& now, const std::vector<Se3>& moved = {});
 
 }  // namespace vsgraphs

@@ -135,6 +135,16 @@ TEST_P(Rebase, WhatTheEditMovedStandsWhereItPutItWhateverHappenedSince) {
   expect_moved_by(correction, *old_, map_);
 }
 
+TEST_P(Rebase, FollowsWhatLoopsHaveMovedSince) {
+  const Se3 correction = Se3::exp(draw(rng_, 0.3)), loop = Se3::exp(draw(rng_, 0.5));
+  const MapEdit edit = moves_all_by(correction);
+  const std::vector<Se3> moved(old_->keyframes().index_bound(), loop);
+  map_.apply(MapEdit{0, carry(*old_, moved)});
+  map_.apply(refinement(0.02));
+  map_.apply(rebase(edit, *old_, map_, moved));
+  expect_moved_by(loop * correction, *old_, map_);
+}
+
 TEST_P(Rebase, WhatWasMadeSinceIsCarriedAlong) {
   const Se3 correction = Se3::exp(draw(rng_, 0.3));
   const MapEdit edit = moves_all_by(correction);

@@ -62,7 +62,7 @@ MapEdit StructureBuilder::propose(const Snapshot& snapshot, const SpaceKeeper& s
   Draft draft(snapshot);
   const Map& map = draft.map();
   if (!map.up_in_world()) return draft.take();
-  const Se3 level_from_world = levelling(*map.up_in_world());
+  const Se3 level_from_world = levelling(map);
   const Span span(trace, "find_rooms");
   auto found = std::make_shared<FoundStructure>(recognise_structure(
       space.view(), faces_of(map, surfaces, level_from_world), map.structure(), options_.structure));

@@ -130,7 +130,7 @@ void MapOwner::look_for_loop() {
     LoopReport report;
     if (auto edit = loop_closer_.close(newest_, snapshot_, *followers_.find<PlaceKeeper>()->places(), report,
                                        &spans_))
-      loop_ = FoundLoop{std::move(*edit), report.verdict == LoopVerdict::closed};
+      loop_ = FoundLoop{std::move(*edit)};
     tally(tallies_.loops, report, *snapshot_);
   });
 }
@@ -143,18 +143,31 @@ void MapOwner::tally(LoopTally& kind, const LoopReport& report, const Map& there
 void MapOwner::close_loop() {
   VSG_INVARIANT(loop_.has_value());
   ++counts_.loops;
+  if (adjustment_) note_moves(loop_->edit);
   apply(loop_->edit, {EditEvent::Kind::loop, newest_frame_, 0, 0});
-  if (loop_->moves_map) drop_adjustment();
   loop_.reset();
   adjust_from_here();
 }
 
-// One that is under way, and still true, is let come to its end: where loop follows loop none ever would.
+// What the adjustment under way will have to follow.
+void MapOwner::note_moves(const MapEdit& loop) {
+  moved_since_adjustment_.resize(map_.keyframes().index_bound());
+  for (const EditOperation& operation : loop.operations) {
+    const auto* move = std::get_if<MoveKeyframe>(&operation);
+    const Keyframe* keyframe = move ? map_.keyframes().find(move->id) : nullptr;
+    if (!keyframe) continue;
+    Se3& moved = moved_since_adjustment_[move->id.index];
+    moved = (move->world_from_camera * keyframe->world_from_camera.inverse() * moved).normalized();
+  }
+}
+
+// One that is under way is let come to its end: where loop follows loop none ever would.
 void MapOwner::adjust_from_here() {
   if (guard_.is_off(adjustment_name)) return;
   adjust_again_ = adjustment_ != nullptr;
   if (adjust_again_) return;
   adjustment_ = std::make_shared<FullAdjustment>(snapshot_, model_);
+  moved_since_adjustment_.clear();
   if (!completed_before_adjustment_) completed_before_adjustment_ = completed_;
 }
 
@@ -186,7 +199,7 @@ void MapOwner::take_in_adjustment() {
   MapEdit edit;
   const bool rebased = adjust_guarded([&] {
     const Span span(&spans_, "rebase_adjustment");
-    edit = rebase(done->edit(), done->base(), *snapshot_);
+    edit = rebase(done->edit(), done->base(), *snapshot_, moved_since_adjustment_);
   });
   if (!rebased) return;
   apply(edit, {EditEvent::Kind::adjust, newest_frame_, done->iterations(), 0});

@@ -51,7 +51,7 @@ class MapOwner {
   bool join_found() const { return join_.has_value(); }
   void join_maps();
   // The adjustment of the whole map to be run, any time and on any thread, while the steps above go on; null: none. It is
-  // another one, or none, once a loop has moved the map or another map is worked on. When it has run, take_in_adjustment()
+  // none once another map is worked on. When it has run, take_in_adjustment()
   // brings what it came to into the map as it is by then.
   const std::shared_ptr<FullAdjustment>& adjustment() const { return adjustment_; }
   // Here, on the owner's thread. False, and nothing to take in, where `stop` said so.
@@ -90,10 +90,10 @@ class MapOwner {
     int made = 0;  // keyframes of this run
     bool loaded = false;
     bool to_adjust = false;  // it was put to sleep before that was done
+    LocalMapper::Young young = {};
   };
   struct FoundLoop {
     MapEdit edit;
-    bool moves_map = false;
   };
   struct FoundJoin {
     std::size_t dormant = 0;
@@ -116,6 +116,7 @@ class MapOwner {
   void tally(LoopTally& kind, const LoopReport& report, const Map& there);
   void adjust_from_here();
   void drop_adjustment();
+  void note_moves(const MapEdit& loop);
 
   SystemOptions options_;
   StageGuard guard_;
@@ -135,7 +136,8 @@ class MapOwner {
   std::optional<FoundLoop> loop_;
   std::optional<FoundJoin> join_;
   std::shared_ptr<FullAdjustment> adjustment_;
-  bool adjust_again_ = false;  // landmarks were merged while one was under way
+  std::vector<Se3> moved_since_adjustment_;  // by loops; world from world, by keyframe index
+  bool adjust_again_ = false;                // a loop was closed while one was under way
   std::optional<std::int64_t> completed_before_adjustment_;
   AtlasCounts counts_;
   LoopTallies tallies_;

@@ -76,7 +76,8 @@ void MapOwner::put_to_sleep() {
   const std::uint32_t age = first_index(*snapshot_);
   const auto behind = std::find_if(dormant_.begin(), dormant_.end(),
                                    [&](const DormantMap& d) { return first_index(*d.state.map) > age; });
-  dormant_.insert(behind, {{snapshot_, followers_}, made_, loaded_, adjustment_ != nullptr});
+  dormant_.insert(behind,
+                  {{snapshot_, followers_}, made_, loaded_, adjustment_ != nullptr, mapper_.put_away()});
   drop_adjustment();
 }
 
@@ -106,6 +107,7 @@ void MapOwner::wake(std::size_t index, EditEvent::Kind why, std::int64_t frame) 
   work_on_map(*woken.state.map, woken.state.followers.copy());
   made_ = woken.made;
   loaded_ = woken.loaded;
+  mapper_.take_up(woken.young);
   publish_dormant();
   apply({opening.version, {opening}}, {why, frame, 0, 0});
   if (woken.to_adjust) adjust_from_here();
@@ -137,6 +139,7 @@ void MapOwner::join_maps() {
     absorbed = followers_;
     work_on_map(*other.state.map, other.state.followers.copy());
   }
+  mapper_.take_up(other.young);
   made_ += other.made;
   loaded_ |= other.loaded;
   ++counts_.merges;

@@ -2,9 +2,10 @@
 
     config = vsgraphs.Config()
     slam = vsgraphs.Slam(config, sequence.camera)
-    result = slam.track(rgb, depth, timestamp)  # (H, W, 3) uint8, (H, W) uint16 raw units or float32 m,
-    seconds slam.finish()
-    timestamps, poses = slam.trajectory()       # (N,) seconds, (N, 4, 4) world_from_camera, metres
+    for rgb, depth, timestamp in frames:  # (H, W, 3) uint8, (H, W) uint16 raw or float32 m, seconds
+        result = slam.track(rgb, depth, timestamp)
+    slam.finish()
+    timestamps, poses = slam.trajectory()  # (N,) seconds, (N, 4, 4) world_from_camera, metres
 
 Importing the package loads nothing; each name loads what it needs at first use.
 """
