@@ -25,13 +25,16 @@ Followers Followers::copy() const {
 
 void Followers::follow(const Map& before, const MapEdit& edit, const Map& after, const Followers* absorbed,
                        const Guard& guard) {
-  for (const auto& follower : all_) {
-    guard(follower->serves(), [&] { follower->follow(before, edit, after, same_kind(*follower, absorbed)); });
-  }
+  std::erase_if(all_, [&](const std::shared_ptr<Follower>& follower) {
+    return !guard(follower->serves(),
+                  [&] { follower->follow(before, edit, after, same_kind(*follower, absorbed)); });
+  });
 }
 
 void Followers::catch_up(const Map& map, bool all, const Guard& guard) {
-  for (const auto& follower : all_) guard(follower->serves(), [&] { follower->catch_up(map, all); });
+  std::erase_if(all_, [&](const std::shared_ptr<Follower>& follower) {
+    return !guard(follower->serves(), [&] { follower->catch_up(map, all); });
+  });
 }
 
 void Followers::start(const Map& map, const Followers& known) const {

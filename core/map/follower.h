@@ -19,7 +19,7 @@ class Follower {
 
   // Names its section in an archive.
   virtual const char* name() const = 0;
-  // The part of the system that cannot do without it: "planes", "rooms" or "loops".
+  // The part of the system that it goes with: where that is switched off, nobody follows any more.
   virtual const char* serves() const = 0;
 
   // Every edit of its map, once and in order; `after` is `before` with the edit applied. `absorbed`: where the edit takes in
@@ -57,6 +57,7 @@ class Followers {
   bool empty() const { return all_.empty(); }
   Followers copy() const;
 
+  // A follower whose part is off, or fails now, is one no more.
   void follow(const Map& before, const MapEdit& edit, const Map& after, const Followers* absorbed,
               const Guard& guard);
   void catch_up(const Map& map, bool all, const Guard& guard);

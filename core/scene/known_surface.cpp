@@ -78,7 +78,8 @@ void KnownSurface::count_patch(KeyframeId stretch, const Se3& stretch_from_camer
   piece.patches += sign;
   if (sign < 0) {
     for (const Eigen::Vector3f& p : patch.points) piece.extent.remove(stretch_from_camera * p.cast<double>());
-    return put_together(stretches);
+    lost_patches_ = true;
+    return;
   }
   // As the whole has it: where the stretch stood when it was put together.
   const Se3 world_from_camera = stretches.at(reference_) * placed_.at(stretch) * stretch_from_camera;
@@ -122,13 +123,15 @@ void KnownSurface::take_over(const KnownSurface& other, const StretchPoses& stre
   }
   count_votes(other.votes_, 1);
   largest_m2_ = std::max(largest_m2_, other.largest_m2_);
+  const bool lost_patches = lost_patches_ || other.lost_patches_;
   put_together(stretches);
+  lost_patches_ = lost_patches;
 }
 
 bool KnownSurface::settle(const StretchPoses& stretches) {
   if (pieces_.empty()) return false;
   const bool anew = !pieces_agree(stretches);
-  if (anew) {
+  if (anew || lost_patches_) {
     put_together(stretches);
   } else {
     const PlaneFrame frame = pieces_.at(reference_).extent.frame().transformed(stretches.at(reference_));
@@ -163,6 +166,7 @@ void KnownSurface::put_together(const StretchPoses& stretches) {
   extent_ = PlaneExtent(frame);
   evidence_ = PlaneEvidence(frame);
   placed_.clear();
+  lost_patches_ = false;
   for (const auto& [stretch, piece] : pieces_) {
     const Se3& world_from_stretch = stretches.at(stretch);
     placed_[stretch] = world_from_reference.inverse() * world_from_stretch;

@@ -61,7 +61,9 @@ class KnownSurface {
   void count_rays(KeyframeId stretch, const MetRays& rays, const StretchPoses& stretches, bool observes_it);
   // Evidence and extents of a plane that turned out to be this one.
   void take_over(const KnownSurface& other, const StretchPoses& stretches);
-  // Brings the whole to where the stretches stand. True if it was put together anew.
+  // Patches were taken out since it was settled: the whole does not know it yet.
+  bool lost_patches() const { return lost_patches_; }
+  // Brings the whole to where the stretches stand, and to what the pieces are. True if pieces had moved against each other.
   bool settle(const StretchPoses& stretches);
 
   // Of one that was read: whether its parts belong together.
@@ -87,6 +89,7 @@ class KnownSurface {
   double largest_m2_ = 0;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double radius_m_ = 0;
+  bool lost_patches_ = false;
 };
 
 }  // namespace vsgraphs

@@ -18,6 +18,12 @@ bool deviates(const Se3& a, const Se3& b) {
   return change.translation().norm() > moved_m || rotation_angle(change.rotation()) > turned_rad;
 }
 
+std::shared_ptr<const KeyframeSurfaces> patches_of(const Map& map, KeyframeId id) {
+  const Keyframe* living = map.keyframes().find(id);
+  const RetiredKeyframe* retired = map.retired_keyframes().find(id);
+  return living ? living->patches : retired ? retired->patches : nullptr;
+}
+
 bool looks_at_a_keyframe(const MapEdit& edit) {
   return std::any_of(edit.operations.begin(), edit.operations.end(), [](const EditOperation& op) {
     const auto* set = std::get_if<SetPatches>(&op);
@@ -43,8 +49,8 @@ const KnownSurface* SurfaceKeeper::find(PlaneId id) const {
 // Goes through an edit's operations; what is no business of planes does nothing.
 class SurfaceKeeper::Following {
  public:
-  Following(SurfaceKeeper& keeper, const Map& before, const Map& after, const SurfaceKeeper* absorbed)
-      : keeper_(keeper), before_(before), after_(after), absorbed_(absorbed) {}
+  Following(SurfaceKeeper& keeper, const Map& after, const SurfaceKeeper* absorbed)
+      : keeper_(keeper), after_(after), absorbed_(absorbed) {}
 
   void run(const MapEdit& edit) {
     for (const EditOperation& operation : edit.operations)
@@ -52,6 +58,7 @@ class SurfaceKeeper::Following {
     if (!keeper_.shifted_.empty()) keeper_.follow_keyframes(after_);
     std::erase_if(keeper_.known_,
                   [this](const auto& entry) { return !after_.planes().contains(entry.first); });
+    keeper_.settle_touched(after_);
     for (const KeyframeId id : looking_) keeper_.tell_rays(after_, id);
   }
 
@@ -64,32 +71,42 @@ class SurfaceKeeper::Following {
   }
   void say(const AddPlaneObservation& op) { keeper_.tell(after_, op.plane, op.observation); }
   void say(const RemovePlaneObservation& op) { keeper_.take_back(after_, op.plane, op.observation); }
-  void say(const RemovePlane& op) { keeper_.forget(before_, op.id); }
-  void say(const MergePlane& op) { keeper_.merge(before_, after_, op.id, op.into); }
+  void say(const RemovePlane& op) { keeper_.forget(op.id); }
+  void say(const MergePlane& op) { keeper_.merge(after_, op.id, after_.planes().resolve(op.into)); }
+  void say(const RemoveKeyframe& op) { keeper_.let_go(after_, op.id); }
   void say(const MoveKeyframe& op) { keeper_.shifted_.insert(after_.stretch_of(op.id)); }
-  void say(const AbsorbMap&) {
-    if (absorbed_) keeper_.absorb(after_, *absorbed_);
+  void say(const AbsorbMap& op) {
+    keeper_.absorb(after_, *absorbed_);
+    op.other->keyframes().for_each([this](KeyframeId id, const Keyframe& keyframe) {
+      if (keyframe.patches && !keeper_.told_[id].rays)
+        looking_.insert(id);  // that map did not know which way is up
+    });
   }
 
   SurfaceKeeper& keeper_;
-  const Map& before_;
   const Map& after_;
   const SurfaceKeeper* absorbed_;
   std::set<KeyframeId> looking_;
 };
 
-void SurfaceKeeper::follow(const Map& before, const MapEdit& edit, const Map& after,
-                           const Follower* absorbed) {
+void SurfaceKeeper::follow(const Map&, const MapEdit& edit, const Map& after, const Follower* absorbed) {
+  const auto* other = dynamic_cast<const SurfaceKeeper*>(absorbed);
+  const auto is_absorb = [](const EditOperation& op) { return std::holds_alternative<AbsorbMap>(op); };
+  const bool absorbs = std::any_of(edit.operations.begin(), edit.operations.end(), is_absorb);
   if (std::exchange(to_interpret_, looks_at_a_keyframe(edit))) {
     changed_.clear();
     moved_.clear();
   }
-  if (after.up_in_world() && !up_) return gather(after);
+  if ((after.up_in_world() && !up_) || (absorbs && !other)) {
+    gather(after);
+    if (absorbs) moved_ = changed_;
+    return;
+  }
   for (const EditOperation& operation : edit.operations) {
     if (const auto* added = std::get_if<AddKeyframe>(&operation)) open_stretch(after, added->id);
   }
   settle(after);
-  Following(*this, before, after, dynamic_cast<const SurfaceKeeper*>(absorbed)).run(edit);
+  Following(*this, after, other).run(edit);
 }
 
 void SurfaceKeeper::gather(const Map& map) {
@@ -103,6 +120,7 @@ void SurfaceKeeper::gather(const Map& map) {
   map.planes().for_each([&](PlaneId id, const MappedPlane& plane) {
     for (const PlaneObservation& o : plane.observations) tell(map, id, o);
   });
+  settle_touched(map);
   map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { tell_rays(map, id); });
 }
 
@@ -155,6 +173,7 @@ void SurfaceKeeper::change_sights(const Map& map, PlaneId plane, KeyframeId keyf
   const bool saw = sees(told, plane);
   known.count_votes(votes_of(told, plane), -1);
   change(known, told, stretch);
+  touched_.insert(plane);
   known.count_votes(votes_of(told, plane), 1);
   if (const bool now = sees(told, plane); now != saw)
     known.count_keyframe(stretch, told.stretch_from_camera, now ? 1 : -1);
@@ -167,11 +186,9 @@ void SurfaceKeeper::tell(const Map& map, PlaneId plane, const PlaneObservation& 
   const auto pose = map.resolve({observation.keyframe, Se3{}});
   if (!patch || !mapped || !pose) return;
   const KeyframeId stretch = map.stretch_of(observation.keyframe);
-  auto [at, fresh] = told_.try_emplace(observation.keyframe);
-  if (fresh || at->second.sights.empty()) {
-    const Keyframe* living = map.keyframes().find(observation.keyframe);
-    at->second.patches =
-        living ? living->patches : map.retired_keyframes().find(observation.keyframe)->patches;
+  const auto at = told_.try_emplace(observation.keyframe).first;
+  if (at->second.sights.empty()) {
+    at->second.patches = patches_of(map, observation.keyframe);
     at->second.stretch_from_camera = stretches_.at(stretch).inverse() * *pose;
   }
   const Sight sight{plane, observation.patch};
@@ -182,7 +199,6 @@ void SurfaceKeeper::tell(const Map& map, PlaneId plane, const PlaneObservation& 
     told.sights.push_back(sight);
     known.count_patch(stretch, told.stretch_from_camera, *patch, stretches_, 1);
   });
-  known_.at(plane).settle(stretches_);
 }
 
 void SurfaceKeeper::take_back(const Map& map, PlaneId plane, const PlaneObservation& observation) {
@@ -196,16 +212,32 @@ void SurfaceKeeper::take_back(const Map& map, PlaneId plane, const PlaneObservat
     t.sights.erase(found);
     known.count_patch(stretch, t.stretch_from_camera, patch, stretches_, -1);
   });
-  find_largest_patch(map, plane);
+  let_go(map, observation.keyframe);
+}
+
+// Of a keyframe that sees no plane (any more) nothing is kept but that it has told what it can; of one that is gone, not even that.
+void SurfaceKeeper::let_go(const Map& map, KeyframeId keyframe) {
+  const auto told = told_.find(keyframe);
+  if (told == told_.end() || !told->second.sights.empty()) return;
+  told->second.patches = nullptr;
+  if (!map.keyframes().contains(keyframe)) told_.erase(told);
+}
+
+// Once per edit, however much of a plane has changed.
+void SurfaceKeeper::settle_touched(const Map& map) {
+  for (const PlaneId id : std::exchange(touched_, {})) {
+    const auto known = known_.find(id);
+    if (known == known_.end()) continue;
+    if (known->second.lost_patches()) find_largest_patch(map, id);
+    known->second.settle(stretches_);
+  }
 }
 
 void SurfaceKeeper::find_largest_patch(const Map& map, PlaneId plane) {
   double largest_m2 = 0;
-  if (const MappedPlane* mapped = map.planes().find(plane)) {
-    for (const PlaneObservation& o : mapped->observations) {
-      const SurfacePatch* patch = map.patch(o);
-      largest_m2 = std::max(largest_m2, patch ? static_cast<double>(patch->area_m2) : 0);
-    }
+  for (const PlaneObservation& o : map.planes().find(plane)->observations) {
+    const SurfacePatch* patch = map.patch(o);
+    largest_m2 = std::max(largest_m2, patch ? static_cast<double>(patch->area_m2) : 0);
   }
   known_.at(plane).set_largest_patch(largest_m2);
 }
@@ -217,20 +249,17 @@ void SurfaceKeeper::take_back_patches(const Map& map, KeyframeId keyframe) {
   for (const Sight& s : sights) take_back(map, s.plane, {keyframe, s.patch});
 }
 
-void SurfaceKeeper::merge(const Map& before, const Map& after, PlaneId gone, PlaneId into) {
+void SurfaceKeeper::merge(const Map& after, PlaneId gone, PlaneId into) {
   const auto from = known_.find(gone);
-  if (from == known_.end() || gone == into || !after.planes().contains(into)) return;
+  if (from == known_.end() || gone == into) return;
+  if (!into.valid()) return forget(gone);
   KnownSurface& known = known_[into];
   known.take_over(from->second, stretches_);
-  if (const MappedPlane* mapped = before.planes().find(gone)) {
-    for (const PlaneObservation& o : mapped->observations) {
-      const auto told = told_.find(o.keyframe);
-      if (told != told_.end() && sees(told->second, gone))
-        see_as_one(known, told->second, after.stretch_of(o.keyframe), gone, into);
-    }
-  }
+  for (auto& [keyframe, told] : told_)
+    if (sees(told, gone)) see_as_one(known, told, after.stretch_of(keyframe), gone, into);
   known_.erase(gone);
   changed_.insert(into);
+  touched_.insert(into);
 }
 
 // A keyframe that saw both has one vote, and stands at one place.
@@ -243,14 +272,9 @@ void SurfaceKeeper::see_as_one(KnownSurface& known, Told& told, KeyframeId stret
   if (saw_both) known.count_keyframe(stretch, told.stretch_from_camera, -1);
 }
 
-void SurfaceKeeper::forget(const Map& before, PlaneId plane) {
-  if (const MappedPlane* mapped = before.planes().find(plane)) {
-    for (const PlaneObservation& o : mapped->observations) {
-      const auto told = told_.find(o.keyframe);
-      if (told != told_.end())
-        std::erase_if(told->second.sights, [&](const Sight& s) { return s.plane == plane; });
-    }
-  }
+void SurfaceKeeper::forget(PlaneId plane) {
+  for (auto& [keyframe, told] : told_)
+    std::erase_if(told.sights, [plane](const Sight& s) { return s.plane == plane; });
   known_.erase(plane);
 }
 

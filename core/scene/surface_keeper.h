@@ -65,13 +65,15 @@ class SurfaceKeeper : public Follower {
   void tell(const Map& map, PlaneId plane, const PlaneObservation& observation);
   void take_back(const Map& map, PlaneId plane, const PlaneObservation& observation);
   void take_back_patches(const Map& map, KeyframeId keyframe);
-  void merge(const Map& before, const Map& after, PlaneId gone, PlaneId into);
+  void let_go(const Map& map, KeyframeId keyframe);
+  void merge(const Map& after, PlaneId gone, PlaneId into);
   void see_as_one(KnownSurface& known, Told& told, KeyframeId stretch, PlaneId gone, PlaneId into);
-  void forget(const Map& before, PlaneId plane);
+  void forget(PlaneId plane);
   void absorb(const Map& map, const SurfaceKeeper& other);
   void follow_keyframes(const Map& map);
   void tell_rays(const Map& map, KeyframeId keyframe);
   void settle(const Map& map);
+  void settle_touched(const Map& map);
   void find_largest_patch(const Map& map, PlaneId plane);
   RoleVotes votes_of(const Told& told, PlaneId plane) const;
   static bool sees(const Told& told, PlaneId plane);
@@ -86,6 +88,7 @@ class SurfaceKeeper : public Follower {
   std::set<PlaneId> changed_, moved_;
   std::set<KeyframeId>
       shifted_;  // stretches that stand elsewhere, or in which a keyframe does, since the edit before
+  std::set<PlaneId> touched_;  // by the edit that is followed
   bool to_interpret_ = false;  // the next edit is what was made of the two
 };
 

@@ -25,13 +25,29 @@ void SurfaceKeeper::load(const ArchiveReader& archive, const std::string& sectio
 namespace {
 
 bool is_frame(const PlaneFrame& frame) {
-  return within(frame.origin, 2 * most_metres) && is_unit(frame.s) && is_unit(frame.t);
+  return within(frame.origin, 2 * most_metres) && is_unit(frame.s) && is_unit(frame.t) &&
+         within(frame.s.dot(frame.t), 1e-3);
+}
+
+bool are_sane(const RoleVotes& votes) {
+  return std::all_of(votes.begin(), votes.end(),
+                     [](float vote) { return within(static_cast<double>(vote), most_information); });
+}
+
+// What the map holds of it: that was checked with the map.
+const KeyframeSurfaces* patches_of(const Map& map, KeyframeId id) {
+  const Keyframe* living = map.keyframes().find(id);
+  const RetiredKeyframe* retired = map.retired_keyframes().find(id);
+  return living ? living->patches.get() : retired ? retired->patches.get() : nullptr;
 }
 
 Wrong wrong_with(const KnownSurface& known, const StretchPoses& stretches) {
   if (!known.fits_together()) return "surfaces that do not fit together";
   if (!is_frame(known.extent().frame()) || !is_frame(known.evidence().frame()))
     return "a surface that is nowhere";
+  if (!are_sane(known.votes()) || !within(known.largest_patch_m2(), most_metres * most_metres) ||
+      !within(known.centre(), 2 * most_metres) || !within(known.radius_m(), 2 * most_metres))
+    return "a surface of no size";
   for (const auto& [stretch, piece] : known.pieces()) {
     if (!stretches.contains(stretch)) return "a surface seen from nowhere";
     if (!is_frame(piece.extent.frame()) || !is_frame(piece.evidence.frame()) || piece.keyframes < 0 ||
@@ -54,6 +70,8 @@ Wrong SurfaceKeeper::wrong_with(const Map& map) const {
   }
   for (const auto& [id, told] : told_) {
     const std::size_t patches = told.patches ? told.patches->patches.size() : 0;
+    if (told.patches && told.patches.get() != patches_of(map, id))
+      return "surfaces of patches that no keyframe has";
     const bool there = std::all_of(told.sights.begin(), told.sights.end(), [&](const Sight& s) {
       return s.patch < patches && known_.contains(s.plane) &&
              known_.at(s.plane).pieces().contains(map.stretch_of(id));

@@ -154,6 +154,16 @@ KeyframeId successor(const Map& map, KeyframeId id, KeyframeId made_before) {
   return made_before.valid() && may(made_before) ? made_before : KeyframeId{};
 }
 
+// A stretch hangs on its first keyframe: that does not go to another stretch while others of its own live.
+bool carries_others(const Map& map, KeyframeId id, KeyframeId anchor) {
+  if (map.stretch_of(id) != id || map.stretch_of(anchor) == id) return false;
+  for (std::uint32_t index = id.index + 1; index < map.keyframes().index_bound(); ++index) {
+    const Keyframe* other = map.keyframes().find(map.keyframes().at_index(index));
+    if (other && other->stretch == id) return true;
+  }
+  return false;
+}
+
 bool may_be_revisit(const CullingOptions& options, const Keyframe& keyframe, const WitnessedShares& shares) {
   // Held by surfaces alone: they were seen before wherever the camera stood before.
   if (shares.landmarks == 0) return keyframe.tracked_link.has_value();
@@ -176,7 +186,7 @@ void cull_keyframes(const CullingOptions& options, const std::vector<KeyframeId>
         may_be_revisit(options, *keyframe, shares) ? made_here_before(options, map, id) : KeyframeId{};
     if (!redundant && !before.valid()) continue;
     const KeyframeId anchor = successor(map, id, before);
-    if (!anchor.valid()) continue;
+    if (!anchor.valid() || carries_others(map, id, anchor)) continue;
     if (before.valid()) forget_surfaces(options, id, draft);
     draft.record(RemoveKeyframe{id, anchor, before.valid()});
   }

@@ -117,6 +117,8 @@ class Tracker {
   // What landmarks are too few to tell, surfaces may. Returns the better pose, or `pose` where they do not.
   std::optional<FramePose> align_surfaces(const Map& map, const std::optional<FramePose>& pose,
                                           double seconds);
+  std::optional<FramePose> find_by_surfaces(const Map& map, const SurfaceReference& reference,
+                                            const PosePriorTerm& prior, double seconds);
   std::optional<FramePose> hold_by_surfaces(const Map& map, const SurfaceReference& reference,
                                             const Se3& guess, const PosePriorTerm& prior, double seconds);
   SurfaceReference choose_surface(const Map& map, const Se3& world_from_camera);

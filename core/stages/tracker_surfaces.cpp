@@ -43,16 +43,14 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
                                                  double seconds) {
   const Se3 guess = pose ? pose->world_from_camera : predicted_;
   const SurfaceReference reference = choose_surface(map, guess);
-
   const PosePriorTerm prior = motion_prior(predicted_, seconds);
   if (!pose) {
-    // Surfaces alone bring the camera near; then the landmarks around can be looked for.
-    const DepthAlignment first = aligner_.align(map, surface_now(), reference, guess, {}, prior);
-    if (!first.convincing()) return std::nullopt;
-    matches_.reset(now_.features->size());
-    local_map_.select(map, {}, reference.id, options_.local_keyframes);
-    match_local_map(map, first.solution.world_from_camera, options_.local_search_radius_px);
-    return hold_by_surfaces(map, reference, first.solution.world_from_camera, prior, seconds);
+    // The last frame stands nearest: where a keyframe's surfaces cannot be brought to agree, its still may.
+    const SurfaceReference last{last_->pose.keyframe, *last_world_, last_->surface.get()};
+    for (const SurfaceReference& candidate : {reference, last}) {
+      if (const auto held = find_by_surfaces(map, candidate, prior, seconds)) return held;
+    }
+    return std::nullopt;
   }
   const FrameMatches matches = matches_;
   const auto held = hold_by_surfaces(map, reference, guess, prior, seconds);
@@ -63,6 +61,18 @@ std::optional<FramePose> Tracker::align_surfaces(const Map& map, const std::opti
   // A few matches that the surfaces contradict are a coincidence.
   const DepthAlignment judged = aligner_.judge(surface_now(), reference, guess);
   return judged.contradicts() ? std::nullopt : pose;
+}
+
+// Surfaces alone bring the camera near; then the landmarks around can be looked for.
+std::optional<FramePose> Tracker::find_by_surfaces(const Map& map, const SurfaceReference& reference,
+                                                   const PosePriorTerm& prior, double seconds) {
+  DepthAlignment first = aligner_.align(map, surface_now(), reference, predicted_, {}, prior);
+  if (!first.convincing()) first = aligner_.align(Map{}, surface_now(), reference, predicted_, {}, prior);
+  if (!first.convincing()) return std::nullopt;
+  matches_.reset(now_.features->size());
+  local_map_.select(map, {}, reference.id, options_.local_keyframes);
+  match_local_map(map, first.solution.world_from_camera, options_.local_search_radius_px);
+  return hold_by_surfaces(map, reference, first.solution.world_from_camera, prior, seconds);
 }
 
 std::optional<FramePose> Tracker::hold_by_surfaces(const Map& map, const SurfaceReference& reference,

@@ -128,8 +128,7 @@ void MapOwner::look_for_loop() {
   const Span span(&spans_, "look_for_loop");
   guard_.run("loops", [&] {
     LoopReport report;
-    if (auto edit = loop_closer_.close(newest_, snapshot_, *followers_.find<PlaceKeeper>()->places(), report,
-                                       &spans_))
+    if (auto edit = loop_closer_.close(newest_, snapshot_, *places(), report, &spans_))
       loop_ = FoundLoop{std::move(*edit)};
     tally(tallies_.loops, report, *snapshot_);
   });
@@ -216,16 +215,18 @@ void MapOwner::finish_adjustment() {
 
 void MapOwner::find_rooms(bool last) {
   scene_spans_.set_frame(newest_frame_);
-  MapEdit edit;
   {
     const Span span(&scene_spans_, "follow_map");
     followers_.catch_up(*snapshot_, last, guarded());
     warn();
   }
+  const auto* space = followers_.find<SpaceKeeper>();
+  const auto* surfaces = followers_.find<SurfaceKeeper>();
+  if (!space || !surfaces) return;  // rooms are made of walls
+  MapEdit edit;
   const bool found = guard_.run("rooms", [&] {
     const Span span(&scene_spans_, "find_structure");
-    edit = structure_.propose(snapshot_, *followers_.find<SpaceKeeper>(), *followers_.find<SurfaceKeeper>(),
-                              newest_s_, &scene_spans_);
+    edit = structure_.propose(snapshot_, *space, *surfaces, newest_s_, &scene_spans_);
   });
   if (!found) return;
   apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
@@ -264,10 +265,14 @@ Followers::Guard MapOwner::guarded() {
   return [this](const char* part, const std::function<void()>& work) { return guard_.run(part, work); };
 }
 
+std::shared_ptr<const PlaceIndex> MapOwner::places() const {
+  const auto* keeper = followers_.find<PlaceKeeper>();
+  return keeper ? keeper->places() : std::make_shared<const PlaceIndex>();
+}
+
 void MapOwner::publish() {
-  cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_),
-                 followers_.find<PlaceKeeper>()->places(), published_dormant_, counts_, published_tallies_,
-                 guard_.warnings()});
+  cell_.publish({snapshot_, inserted_, completed_before_adjustment_.value_or(completed_), places(),
+                 published_dormant_, counts_, published_tallies_, guard_.warnings()});
 }
 
 }  // namespace vsgraphs

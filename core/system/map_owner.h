@@ -106,6 +106,7 @@ class MapOwner {
   void start_from(const AtlasState& known);
   Followers::Guard guarded();
   void warn();
+  std::shared_ptr<const PlaceIndex> places() const;
   void seek_planes(KeyframeId keyframe, const LabelGrid* labels, EditEvent event);
   void work_on_map(const Map& map, Followers followers);
   void put_to_sleep();

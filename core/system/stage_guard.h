@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ class StageGuard {
     try {
       std::forward<Work>(work)();
       return true;
+    } catch (const std::bad_alloc&) {
+      throw;  // no defect of this part
     } catch (const std::exception& error) {
       if (stops_) throw;
       switch_off(stage, error.what());

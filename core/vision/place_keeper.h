@@ -21,7 +21,7 @@ class PlaceKeeper : public Follower {
   const std::shared_ptr<const PlaceIndex>& places() const { return places_; }
 
   const char* name() const override { return "places"; }
-  const char* serves() const override { return "loops"; }
+  const char* serves() const override { return "places"; }
   void follow(const Map& before, const MapEdit& edit, const Map& after, const Follower* absorbed) override;
   void gather(const Map& map) override;
   bool adopt(const Follower& known) override;
