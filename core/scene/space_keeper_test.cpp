@@ -138,11 +138,11 @@ TEST_F(SpaceKeeperTest, CulledKeyframesLetGoOfTheirDepthInAnotherStretch) {
   kept_.up();
   kept_.edit({RemoveKeyframe{{3, 0}, {2, 0}}});
   kept_.catch_up();
-  EXPECT_EQ(kept_.keeper->parts().at(first_).space.views().size(), n / 2 - 1) << "gone before it was carved";
+  EXPECT_EQ(kept_.keeper->parts().at(first_).space->views().size(), n / 2 - 1) << "gone before it was carved";
   kept_.edit({RemoveKeyframe{{4, 0}, {2, 0}}});
   kept_.catch_up();
   const auto depth_of = [&](std::uint32_t k) {
-    return keeper().parts().at(first_).space.views().at({k, 0}).depth;
+    return keeper().parts().at(first_).space->views().at({k, 0}).depth;
   };
   EXPECT_NE(depth_of(4), nullptr);
   second_ = kept_.add_walk(walk_, n / 2, n);
@@ -159,6 +159,19 @@ TEST_F(SpaceKeeperTest, CulledKeyframesLetGoOfTheirDepthInAnotherStretch) {
   EXPECT_EQ(keeper().last_work().carved, 0);
   kept_.depths.erase({3, 0});
   EXPECT_EQ(difference(keeper().voxels(), kept_.anew().voxels()), 0U);
+}
+
+TEST_F(SpaceKeeperTest, ACopyGoesItsOwnWay) {
+  walk_through();
+  const KeptMap slept = kept_;
+  const auto asleep = std::dynamic_pointer_cast<SpaceKeeper>(keeper().copy());
+  kept_.move_stretch(second_, standing_at(0.4));
+  kept_.edit({RemoveKeyframe{{4, 0}, {2, 0}, true}});
+  kept_.catch_up();
+  EXPECT_EQ(difference(keeper().voxels(), kept_.anew().voxels()), 0U);
+  EXPECT_EQ(difference(asleep->voxels(), slept.anew().voxels()), 0U);
+  const auto woken = std::dynamic_pointer_cast<SpaceKeeper>(asleep->copy());
+  EXPECT_EQ(&woken->voxels(), &asleep->voxels()) << "costs nothing until it changes";
 }
 
 TEST(SpaceKeeperLimits, WhatDoesNotFitIsLeftOutOnceAndSaidOnce) {
