@@ -29,7 +29,7 @@ void SpaceKeeper::catch_up(const Map& map, bool all) {
 
 bool SpaceKeeper::knows(KeyframeId keyframe) const {
   return std::any_of(parts_.begin(), parts_.end(),
-                     [&](const auto& part) { return part.second.space.views().contains(keyframe); });
+                     [&](const auto& part) { return part.second.space->views().contains(keyframe); });
 }
 
 void SpaceKeeper::find_new(const Map& map) {
@@ -39,13 +39,19 @@ void SpaceKeeper::find_new(const Map& map) {
   });
 }
 
+FreeSpace& SpaceKeeper::grid_of(Part& part) {
+  ++work_.carved;
+  part.summed = false;
+  FreeSpace& grid = part.space.edit();
+  grid.use(options_);
+  return grid;
+}
+
 void SpaceKeeper::forget_replaced() {
   for (const KeyframeId id : std::exchange(replaced_, {})) {
     for (auto& [stretch, part] : parts_) {
-      if (!part.space.views().contains(id)) continue;
-      part.space.remove(id);
-      part.summed = false;
-      ++work_.carved;
+      if (!part.space->views().contains(id)) continue;
+      grid_of(part).remove(id);
     }
   }
 }
@@ -59,7 +65,7 @@ bool SpaceKeeper::is_noted(KeyframeId stretch, const Part& part) const {
 std::vector<CarvedView> SpaceKeeper::look_at(const Map& map, const Se3& level_from_world, Part& part) {
   std::vector<CarvedView> views;
   part.held_by.clear();
-  for (const auto& [id, view] : part.space.views()) {
+  for (const auto& [id, view] : part.space->views()) {
     CarvedView& seen = views.emplace_back(
         CarvedView{view.level_from_camera, part.level_from_grid * view.level_from_camera, !view.depth});
     const auto held = map.reanchor({id, Se3{}});
@@ -84,7 +90,7 @@ void SpaceKeeper::put_in_place(const Map& map, const Se3& level_from_world, bool
     part.summed = part.summed && stays;
     const Se3 grid_from_level = part.level_from_grid.inverse();
     std::size_t i = 0;
-    for (const auto& [id, view] : part.space.views()) {
+    for (const auto& [id, view] : part.space->views()) {
       const CarvedView& seen = views[i++];
       const Se3 to = grid_from_level * seen.level_from_camera;
       const double by = off_by(seen.grid_from_camera, to, options_);
@@ -102,16 +108,13 @@ void SpaceKeeper::put_in_place(const Map& map, const Se3& level_from_world, bool
       moved_.insert(view.stretch);
       continue;
     }
-    Part& part = parts_.at(view.stretch);
-    part.space.refresh({&view.to, 1}, 1);
-    part.summed = false;
-    ++work_.carved;
+    grid_of(parts_.at(view.stretch)).refresh({&view.to, 1}, 1);
   }
 }
 
 bool SpaceKeeper::is_full() const {
   std::size_t blocks = 0;
-  for (const auto& [stretch, part] : parts_) blocks += part.space.voxels().blocks().size();
+  for (const auto& [stretch, part] : parts_) blocks += part.space->voxels().blocks().size();
   return blocks >= static_cast<std::size_t>(options_.max_blocks);
 }
 
@@ -125,12 +128,11 @@ void SpaceKeeper::carve_new(const Map& map, const Se3& level_from_world) {
     }
     const auto [at, begun] = parts_.try_emplace(keyframe->stretch);
     Part& part = at->second;
-    if (begun) part.space = FreeSpace(options_);
-    part.space.integrate(id, keyframe->surface,
-                         part.level_from_grid.inverse() * (level_from_world * keyframe->world_from_camera));
+    if (begun) part.space = CopyOnWrite(FreeSpace(options_));
+    grid_of(part).integrate(
+        id, keyframe->surface,
+        part.level_from_grid.inverse() * (level_from_world * keyframe->world_from_camera));
     part.held_by.insert(keyframe->stretch);
-    part.summed = false;
-    ++work_.carved;
   }
 }
 
@@ -138,13 +140,15 @@ void SpaceKeeper::sum() {
   std::vector<BlockKey> changed = std::exchange(left_, {});
   for (auto& [stretch, part] : parts_) {
     if (part.summed) continue;
-    part.space.drop_empty();
+    const auto& blocks = part.space->voxels().blocks();
+    if (std::any_of(blocks.begin(), blocks.end(), [](const auto& block) { return block.empty(); }))
+      part.space.edit().drop_empty();
     changed.insert(changed.end(), part.covers.begin(), part.covers.end());
-    part.covers = covered_blocks(part.space.voxels(), part.level_from_grid, options_.voxel_m);
+    part.covers = covered_blocks(part.space->voxels(), part.level_from_grid, options_.voxel_m);
     changed.insert(changed.end(), part.covers.begin(), part.covers.end());
     part.summed = true;
   }
-  std::erase_if(parts_, [](const auto& part) { return part.second.space.views().empty(); });
+  std::erase_if(parts_, [](const auto& part) { return part.second.space->views().empty(); });
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   bool emptied = false;
@@ -153,14 +157,14 @@ void SpaceKeeper::sum() {
     block.origin = origin_of(key);
     for (const auto& [stretch, part] : parts_) {
       if (std::binary_search(part.covers.begin(), part.covers.end(), key))
-        add_placed(part.space.voxels(), part.level_from_grid, options_.voxel_m, block);
+        add_placed(part.space->voxels(), part.level_from_grid, options_.voxel_m, block);
     }
     const bool empty = block.empty();
-    const bool known = whole_.find(block.origin) != nullptr;
+    const bool known = whole_->find(block.origin) != nullptr;
     emptied |= empty && known;
-    if (!empty || known) whole_.block(block.origin) = block;
+    if (!empty || known) whole_.edit().block(block.origin) = block;
   }
-  if (emptied) whole_.drop_empty();
+  if (emptied) whole_.edit().drop_empty();
   work_.summed = static_cast<int>(changed.size());
 }
 

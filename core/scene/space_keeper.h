@@ -8,6 +8,7 @@
 
 #include <set>
 
+#include "core/base/copy_on_write.h"
 #include "core/map/follower.h"
 #include "core/scene/space_placement.h"
 #include "core/scene/space_sum.h"
@@ -17,9 +18,9 @@ namespace vsgraphs {
 
 class SpaceKeeper final : public Follower {
  public:
-  // The grid of a stretch, and where it stands.
+  // The grid of a stretch, and where it stands. Copies of the keeper share it until one of them changes it.
   struct Part {
-    FreeSpace space{FreeSpaceOptions{}};
+    CopyOnWrite<FreeSpace> space{FreeSpace(FreeSpaceOptions{})};
     Se3 level_from_grid;
     // Not saved:
     bool summed = false;           // the whole has it as it is
@@ -64,7 +65,7 @@ class SpaceKeeper final : public Follower {
   void use(const FreeSpaceOptions& options, int max_reintegrations);
 
   // The whole, as it was after the last catch_up().
-  const VoxelBlocks& voxels() const { return whole_; }
+  const VoxelBlocks& voxels() const { return *whole_; }
   SpaceView view() const;
   const std::map<KeyframeId, Part>& parts() const { return parts_; }  // by stretch
   const FreeSpaceOptions& options() const { return options_; }
@@ -82,6 +83,8 @@ class SpaceKeeper final : public Follower {
   void forget_replaced();
   void put_in_place(const Map& map, const Se3& level_from_world, bool all);
   std::vector<CarvedView> look_at(const Map& map, const Se3& level_from_world, Part& part);
+  // Its grid, to be carved.
+  FreeSpace& grid_of(Part& part);
   void carve_new(const Map& map, const Se3& level_from_world);
   void let_go(const Map& map);
   void sum();
@@ -92,7 +95,7 @@ class SpaceKeeper final : public Follower {
   FreeSpaceOptions options_;
   int max_reintegrations_;
   std::map<KeyframeId, Part> parts_;
-  VoxelBlocks whole_;
+  CopyOnWrite<VoxelBlocks> whole_;
   // What waits for the next catch_up().
   std::set<KeyframeId> new_, replaced_;
   std::set<KeyframeId> moved_;  // stretches

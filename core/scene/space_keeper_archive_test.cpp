@@ -113,7 +113,7 @@ TEST_F(SpaceKeeperArchive, WhatCannotBeIsAnError) {
   parts = kept_.keeper->parts();
   FreeSpaceOptions fine;
   fine.voxel_m = 0.05;
-  parts.begin()->second.space = FreeSpace(fine);
+  parts.begin()->second.space = CopyOnWrite(FreeSpace(fine));
   EXPECT_THROW(read(), InputError);
 }
 

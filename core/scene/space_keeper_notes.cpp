@@ -44,7 +44,6 @@ void SpaceKeeper::take_over(const Map& other, const SpaceKeeper* absorbed) {
     if (!added) continue;
     at->second.summed = false;
     at->second.covers.clear();
-    at->second.space.use(options_);
     moved_.insert(stretch);
   }
   new_.insert(absorbed->new_.begin(), absorbed->new_.end());
@@ -78,10 +77,7 @@ void SpaceKeeper::use(const FreeSpaceOptions& options, int max_reintegrations) {
   const bool same = options.voxel_m == options_.voxel_m && options.range_m == options_.range_m;
   options_ = options;
   max_reintegrations_ = max_reintegrations;
-  if (same)
-    for (auto& [stretch, part] : parts_) part.space.use(options);
-  else
-    clear();
+  if (!same) clear();
 }
 
 // A keyframe that is gone is not corrected by itself any more once the map goes on elsewhere, and its depth is held by nobody else.
@@ -91,32 +87,32 @@ void SpaceKeeper::let_go(const Map& map) {
     if (!part.to_let_go || moved_.contains(stretch)) continue;
     part.to_let_go = false;
     std::vector<KeyframeId> gone;
-    for (const auto& [id, view] : part.space.views()) {
+    for (const auto& [id, view] : part.space->views()) {
       if (!view.depth || map.keyframes().contains(id)) continue;
       if (map.stretch_of(id) == newest_stretch)
         part.to_let_go = true;
       else
         gone.push_back(id);
     }
-    for (const KeyframeId id : gone) part.space.freeze(id);
+    for (const KeyframeId id : gone) part.space.edit().freeze(id);
   }
 }
 
 SpaceView SpaceKeeper::view() const {
   std::map<KeyframeId, FreeSpace::View> views;
   for (const auto& [stretch, part] : parts_)
-    for (const auto& [id, view] : part.space.views())
+    for (const auto& [id, view] : part.space->views())
       views[id] = {view.depth, part.level_from_grid * view.level_from_camera};
   std::vector<FreeSpace::View> ordered;
   ordered.reserve(views.size());
   for (auto& [id, view] : views) ordered.push_back(std::move(view));
-  return {whole_, options_.voxel_m, std::move(ordered)};
+  return {*whole_, options_.voxel_m, std::move(ordered)};
 }
 
 std::size_t SpaceKeeper::memory_bytes() const {
-  std::size_t bytes = whole_.memory_bytes();
+  std::size_t bytes = whole_->memory_bytes();
   for (const auto& [stretch, part] : parts_)
-    bytes += part.space.memory_bytes() + part.covers.capacity() * sizeof(BlockKey);
+    bytes += part.space->memory_bytes() + part.covers.capacity() * sizeof(BlockKey);
   return bytes;
 }
 
