@@ -71,7 +71,7 @@ class SurfaceKeeper::Following {
   }
   void say(const AddPlaneObservation& op) { keeper_.tell(after_, op.plane, op.observation); }
   void say(const RemovePlaneObservation& op) { keeper_.take_back(after_, op.plane, op.observation); }
-  void say(const RemovePlane& op) { keeper_.forget(op.id); }
+  void say(const RemovePlane& op) { keeper_.forget(after_, op.id); }
   void say(const MergePlane& op) { keeper_.merge(after_, op.id, after_.planes().resolve(op.into)); }
   void say(const RemoveKeyframe& op) { keeper_.let_go(after_, op.id); }
   void say(const MoveKeyframe& op) { keeper_.shifted_.insert(after_.stretch_of(op.id)); }
@@ -252,7 +252,7 @@ void SurfaceKeeper::take_back_patches(const Map& map, KeyframeId keyframe) {
 void SurfaceKeeper::merge(const Map& after, PlaneId gone, PlaneId into) {
   const auto from = known_.find(gone);
   if (from == known_.end() || gone == into) return;
-  if (!into.valid()) return forget(gone);
+  if (!into.valid()) return forget(after, gone);
   KnownSurface& known = known_[into];
   known.take_over(from->second, stretches_);
   for (auto& [keyframe, told] : told_)
@@ -272,9 +272,13 @@ void SurfaceKeeper::see_as_one(KnownSurface& known, Told& told, KeyframeId stret
   if (saw_both) known.count_keyframe(stretch, told.stretch_from_camera, -1);
 }
 
-void SurfaceKeeper::forget(PlaneId plane) {
-  for (auto& [keyframe, told] : told_)
+void SurfaceKeeper::forget(const Map& map, PlaneId plane) {
+  std::vector<KeyframeId> left;
+  for (auto& [keyframe, told] : told_) {
     std::erase_if(told.sights, [plane](const Sight& s) { return s.plane == plane; });
+    if (told.sights.empty()) left.push_back(keyframe);
+  }
+  for (const KeyframeId keyframe : left) let_go(map, keyframe);
   known_.erase(plane);
 }
 

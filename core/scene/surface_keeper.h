@@ -68,7 +68,7 @@ class SurfaceKeeper : public Follower {
   void let_go(const Map& map, KeyframeId keyframe);
   void merge(const Map& after, PlaneId gone, PlaneId into);
   void see_as_one(KnownSurface& known, Told& told, KeyframeId stretch, PlaneId gone, PlaneId into);
-  void forget(PlaneId plane);
+  void forget(const Map& map, PlaneId plane);
   void absorb(const Map& map, const SurfaceKeeper& other);
   void follow_keyframes(const Map& map);
   void tell_rays(const Map& map, KeyframeId keyframe);

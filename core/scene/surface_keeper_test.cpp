@@ -17,7 +17,7 @@ using namespace test;
 
 constexpr ArchiveKind kind{"SURFACES", 3, "test"};
 
-// A map whose planes are the walls y = 3 + 4 i, each by two ids that may be merged.
+// A map whose planes are the walls y = 3 + 4 i, each by three ids that may be merged.
 class FollowedMap {
  public:
   explicit FollowedMap(std::uint64_t seed) : rng_(seed, "followed_map", 0) {}
@@ -62,7 +62,7 @@ class FollowedMap {
     std::vector<EditOperation> operations{SetPatches{id, std::make_shared<const KeyframeSurfaces>(surfaces)}};
     for (std::uint16_t i = 0; i < 2; ++i)
       operations.push_back(
-          AddPlaneObservation{plane_of(2 * wall + static_cast<int>(rng_.uniform(0, 2))), {id, i}});
+          AddPlaneObservation{plane_of(3 * wall + static_cast<int>(rng_.uniform(0, 3))), {id, i}});
     apply(std::move(operations));
   }
 
@@ -89,15 +89,20 @@ class FollowedMap {
     apply({RemoveKeyframe{id, anchor}});
   }
   void remove_observation() {
-    const auto at = static_cast<std::uint32_t>(rng_.uniform(0, 6));
+    const auto at = static_cast<std::uint32_t>(rng_.uniform(0, 9));
     const MappedPlane* plane = map.planes().find(map.planes().at_index(at));
-    if (plane) apply({RemovePlaneObservation{map.planes().at_index(at), plane->observations.front()}});
+    if (plane && !plane->observations.empty())
+      apply({RemovePlaneObservation{map.planes().at_index(at), plane->observations.front()}});
   }
   void merge() {
     const int wall = static_cast<int>(rng_.uniform(0, 3));
-    apply({MergePlane{plane_of(2 * wall), plane_of(2 * wall + 1)}});
+    const PlaneId first = plane_of(3 * wall), second = plane_of(3 * wall + 1), third = plane_of(3 * wall + 2);
+    if (rng_.uniform() < 0.5)
+      apply({MergePlane{first, second}});
+    else
+      apply({MergePlane{first, second}, MergePlane{second, third}});
   }
-  void remove_plane() { apply({RemovePlane{plane_of(static_cast<int>(rng_.uniform(0, 6)))}}); }
+  void remove_plane() { apply({RemovePlane{plane_of(static_cast<int>(rng_.uniform(0, 9)))}}); }
   void forget_patches() { apply({SetPatches{any(), nullptr}}); }
   void do_something() {
     static constexpr void (FollowedMap::* edits[])() = {
@@ -108,6 +113,16 @@ class FollowedMap {
     (this->*edits[living_.empty() ? 0 : static_cast<std::size_t>(rng_.uniform(0, std::size(edits)))])();
   }
 
+  PlaneId plane_of(int number) {
+    PlaneId& id = planes_[number];
+    if (map.planes().contains(id)) return id;
+    id = map.planes().next_id();
+    MappedPlane plane;
+    plane.plane = plane_at({0, 3.0 + 4 * (number / 3), 1.2}, -Eigen::Vector3d::UnitY());
+    apply({AddPlane{id, plane}});
+    return id;
+  }
+
  private:
   KeyframeId any() {
     return living_[static_cast<std::size_t>(rng_.uniform(0, static_cast<double>(living_.size())))];
@@ -116,15 +131,6 @@ class FollowedMap {
     Vector6d twist;
     for (int i = 0; i < 6; ++i) twist[i] = rng_.uniform(-1, 1) * (i < 3 ? most_m : most_rad);
     return twist;
-  }
-  PlaneId plane_of(int number) {
-    PlaneId& id = planes_[number];
-    if (map.planes().contains(id)) return id;
-    id = map.planes().next_id();
-    MappedPlane plane;
-    plane.plane = plane_at({0, 3.0 + 4 * (number / 2), 1.2}, -Eigen::Vector3d::UnitY());
-    apply({AddPlane{id, plane}});
-    return id;
   }
 
   Rng rng_;
@@ -170,9 +176,14 @@ TEST_P(SurfaceKeeperRandomly, KnowsWhatAKeeperGatheredAnewWouldKnow) {
   FollowedMap other(GetParam() + 100);
   other.apply({OpenMap{followed.map.unused_ids(), 0}});
   for (int i = 0; i < 20; ++i) other.do_something();
+  // As a join does it: in one edit, the doubled walls with it.
   Vector6d twist;
-  twist << 0.3, -0.2, 0.1, 0.02, 0.1, 0.3;
-  followed.apply({AbsorbMap{std::make_shared<const Map>(other.map), Se3::exp(twist)}}, &other.keeper);
+  twist << 0.03, -0.02, 0.01, 0.002, 0.01, 0.003;
+  std::vector<EditOperation> merges;
+  for (int wall = 0; wall < 3; ++wall)
+    merges.push_back(MergePlane{other.plane_of(3 * wall), followed.plane_of(3 * wall)});
+  merges.insert(merges.begin(), AbsorbMap{other.map.snapshot(), Se3::exp(twist)});
+  followed.apply(std::move(merges), &other.keeper);
   expect_like_gathered(followed);
   for (int i = 0; i < 20; ++i) followed.do_something();
   expect_like_gathered(followed);

@@ -134,13 +134,11 @@ OdometryStep measure_step(const Map& map, KeyframeId keyframe, const Measurement
 }
 
 void measure_odometry(const MeasurementModel& model, const Window& window, KeyframeId newest, Draft& draft) {
-  const auto& keyframes = draft.map().keyframes();
   std::vector<KeyframeId> left;
-  for (std::uint32_t index = newest.index; index-- > 0 && left.size() < at_most;) {
-    const KeyframeId id = keyframes.at_index(index);
-    if (!id.valid() || keyframes.find(id)->odometry) continue;
+  draft.map().keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
+    if (keyframe.odometry || !(id < newest) || left.size() >= at_most) return;
     if (std::find(window.free.begin(), window.free.end(), id) == window.free.end()) left.push_back(id);
-  }
+  });
   for (const KeyframeId id : left) draft.record(SetOdometry{id, measure_step(draft.map(), id, model)});
 }
 
