@@ -141,6 +141,12 @@ nb::dict level_plane(const Scene& scene, std::size_t r, bool ceiling) {
   return d;
 }
 
+bool occurs(const Scene& scene, SceneClass label) {
+  for (const Instance& instance : scene.instances)
+    if (instance.label == label) return true;
+  return false;
+}
+
 template <typename Make>
 nb::list listed(std::size_t count, const Make& make) {
   nb::list out;
@@ -164,7 +170,8 @@ nb::dict scene_truth(const Scene& scene, const ObservationCounter& seen) {
   d["instances"] = listed(scene.instances.size(), [&](std::size_t i) { return instance_truth(scene, i); });
   nb::dict classes;
   for (std::size_t i = 0; i < scene_class_names.size(); ++i)
-    classes[std::string(scene_class_names[i]).c_str()] = i;
+    if (i < first_rare_class || occurs(scene, static_cast<SceneClass>(i)))
+      classes[std::string(scene_class_names[i]).c_str()] = i;
   d["classes"] = classes;
   d["adjacency"] = listed(scene.doors.size(), [&](std::size_t i) {
     nb::list rooms;

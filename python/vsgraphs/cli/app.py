@@ -147,7 +147,26 @@ def simulate(
         Path | None,
         typer.Option("--plan-only", metavar="FILE", help="Write the plan to this file and render nothing."),
     ] = None,
-    noise: Annotated[str, typer.Option(help="sensor: as a real camera sees it; clean: exact.")] = "sensor",
+    noise: Annotated[
+        str, typer.Option(help="sensor: as a real camera sees it; clean: exact, as --sensor clean.")
+    ] = "sensor",
+    sensor: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Camera: classic, clean, kinect1, kinect2, d435 or iphone_lidar; the plan's unless given.",
+            autocompletion=completion.chosen_from(
+                "classic", "clean", "kinect1", "kinect2", "d435", "iphone_lidar"
+            ),
+        ),
+    ] = None,
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUE",
+            help="Effect of the camera, as rolling_shutter_s=0.02; repeatable. docs/simulator.md lists them.",
+        ),
+    ] = None,
     frames: Annotated[int | None, typer.Option(min=1, help="Write at most this many frames.")] = None,
     fps: Annotated[float | None, typer.Option(help="Frames per second, the plan's unless given.")] = None,
     every: Annotated[int, typer.Option(min=1, help="Keep only each n-th frame.")] = 1,
@@ -164,7 +183,7 @@ def simulate(
     """Render a recorded sequence with exact ground truth from a plan of rooms."""
     with told():
         from vsgraphs.cli.choose_plan import PlanChoice, write_plan
-        from vsgraphs.cli.make_sequence import make_sequence, out_folder
+        from vsgraphs.cli.make_sequence import Looks, make_sequence, out_folder
         from vsgraphs.simulate import Output
 
         choice = PlanChoice(plan, building, rooms, furnishings, storeys, seed)
@@ -183,8 +202,7 @@ def simulate(
         code = make_sequence(
             chosen,
             out_folder(out),
-            seed=seed if noise_seed is None else noise_seed,
-            noise=noise,
+            looks=Looks(seed if noise_seed is None else noise_seed, noise, sensor, effect or []),
             frames=frames,
             output=output,
         )

@@ -164,5 +164,5 @@ PLAN = Table(
 )
 # Read by the loader itself.
 CAMERA_KEYS = ("width", "height", "fx", "fy", "cx", "cy")
-EXTRA_KEYS = ("rotate_deg", "camera")
+EXTRA_KEYS = ("rotate_deg", "camera", "sensor", "effects")
 COMMENT = "comment"  # allowed in every object, ignored
