@@ -112,7 +112,16 @@ void bind_simulate(nb::module_& m) {
       .def_prop_ro("frame_count", &Scene::frame_count)
       .def_prop_ro("duration_s", [](const Scene& s) { return s.path.duration_s(); })
       .def_prop_ro("face_count", [](const Scene& s) { return s.faces.size(); })
-      .def_prop_ro("plan", [](const Scene& s) { return s.plan; });
+      .def_prop_ro("plan", [](const Scene& s) { return s.plan; })
+      .def(
+          "poses",
+          [](const Scene& s, const std::vector<double>& times_s) {
+            std::vector<double> rows;
+            for (const double t : times_s) append_rows(rows, s.path.world_from_camera(t));
+            return to_numpy(std::move(rows), {times_s.size(), 4, 4});
+          },
+          "times_s"_a,
+          "(n, 4, 4) float64: world_from_camera at seconds since the start, held before and after the walk.");
   m.def("build_scene", &build_scene, "plan"_a, nb::call_guard<nb::gil_scoped_release>(),
         "Raises InputError naming the plan's key that cannot be built or walked.");
   nb::class_<Renderer>(m, "Renderer", "Renders frames of a scene in any order; use one per thread.")

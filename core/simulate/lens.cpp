@@ -68,6 +68,11 @@ Vector2d Lens::undistort(const Vector2d& bent) const {
   Vector2d p = bent;
   if (model == "kannala_brandt")  // as if there were no coefficients
     p = bent * (std::tan(std::min(bent.norm(), 1.4)) / std::max(bent.norm(), 1e-12));
+  return undistort(bent, p);
+}
+
+Vector2d Lens::undistort(const Vector2d& bent, const Vector2d& near) const {
+  Vector2d p = near;
   for (int i = 0; i < newton_steps; ++i) {
     const Vector2d error = bent - distort(p);
     if (error.norm() < 1e-12) break;
@@ -90,19 +95,32 @@ Vector2d Lens::undistort(const Vector2d& bent) const {
 LensMap::LensMap(const Camera& camera, const Lens& lens, const std::vector<Vector2d>& offsets)
     : pinhole_(camera) {
   lens.validate();
+  // One point per pixel is sought; places within it are taken from its neighbours.
+  const Vector2d focal(camera.fx, camera.fy);
+  Image<Vector2d> ideal(camera.width + 1, camera.height + 1, Vector2d(0, 0));
   Vector2d low(0, 0), high(0, 0);
+  for (int v = 0; v <= camera.height; ++v) {
+    for (int u = 0; u <= camera.width; ++u) {
+      const Vector2d bent((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy);
+      const Vector2d p = u == 0 && v == 0
+                             ? lens.undistort(bent)
+                             : lens.undistort(bent, ideal.at(std::max(0, u - 1), u > 0 ? v : v - 1));
+      ideal.at(u, v) = p;
+      low = low.cwiseMin(p.cwiseProduct(focal)), high = high.cwiseMax(p.cwiseProduct(focal));
+    }
+  }
   for (const Vector2d& offset : offsets) {
     Image<Eigen::Vector2f>& map = maps_.emplace_back(camera.width, camera.height, Eigen::Vector2f(0, 0));
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
-        const Vector2d bent((u + offset.x() - camera.cx) / camera.fx,
-                            (v + offset.y() - camera.cy) / camera.fy);
-        const Vector2d ideal = lens.undistort(bent).cwiseProduct(Vector2d(camera.fx, camera.fy));
-        low = low.cwiseMin(ideal), high = high.cwiseMax(ideal);
-        map.at(u, v) = ideal.cast<float>();
+        const Vector2d here = ideal.at(u, v);
+        const Vector2d there =
+            here + offset.x() * (ideal.at(u + 1, v) - here) + offset.y() * (ideal.at(u, v + 1) - here);
+        map.at(u, v) = there.cwiseProduct(focal).cast<float>();
       }
     }
   }
+  low -= Vector2d(1, 1), high += Vector2d(1, 1);  // for the places within the first and last pixels
   // Whole pixels from the lens's centre, so that a straight lens picks each pixel's own place.
   pinhole_.cx = camera.cx + std::ceil(-low.x() - camera.cx) + 1;
   pinhole_.cy = camera.cy + std::ceil(-low.y() - camera.cy) + 1;

@@ -22,6 +22,8 @@ struct Lens {
   Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;
   // The ideal point that `distort` takes here; Newton's method. InputError where there is none.
   Eigen::Vector2d undistort(const Eigen::Vector2d& bent) const;
+  // The same, sought from a point nearby.
+  Eigen::Vector2d undistort(const Eigen::Vector2d& bent, const Eigen::Vector2d& near) const;
 };
 
 // Where a pinhole image shows what each pixel of the lens's image sees: the image is rendered there and picked from.

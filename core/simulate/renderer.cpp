@@ -17,6 +17,26 @@ constexpr double ray_offsets[rays_per_pixel][2] = {
 constexpr int band_rows = 8;                            // of a rolling shutter: rows that share a moment
 constexpr float pane_passes = 0.88f, pane_adds = 7.0f;  // light through a pane of glass, and off it
 
+// A row's pixels first..end that see one face straight on: what the general case below works out, in loops without
+// branches.
+void look_at_run(const Camera& camera, const PixelForm<double>& form, int v, int first, int end,
+                 ExactDepth& out) {
+  std::uint16_t* depth = &out.depth.at(0, v);
+  for (int u = first; u < end; ++u) {
+    const double raw = camera.depth_scale / form.at(u, v) + 0.5;
+    depth[u] = static_cast<std::uint16_t>(raw < 65536 && raw >= 0 ? static_cast<std::int32_t>(raw) : 0);
+  }
+  if (out.incidence.empty()) return;
+  float* incidence = &out.incidence.at(0, v);
+  const double nx = form.a * camera.fx, ny = form.b * camera.fy;
+  const double nz = form.c + form.a * camera.cx + form.b * camera.cy;
+  const double n2 = nx * nx + ny * ny + nz * nz, y = (v - camera.cy) / camera.fy;
+  for (int u = first; u < end; ++u) {
+    const double x = (u - camera.cx) / camera.fx;
+    incidence[u] = static_cast<float>(std::abs(form.at(u, v)) / std::sqrt(n2 * (x * x + y * y + 1)));
+  }
+}
+
 std::vector<LensMap> lens_map(const Camera& camera, const Lens& lens) {
   if (!lens.bends()) return {};
   std::vector<Eigen::Vector2d> offsets{{0, 0}};
@@ -86,7 +106,19 @@ void Renderer::look_at_row(int v, const Moment&, ExactDepth& out, Image<std::uin
     const double raw = camera_.depth_scale / inverse_depth + 0.5;
     return raw < 65536 && raw >= 0 ? static_cast<std::uint16_t>(raw) : std::uint16_t{0};
   };
+  const std::int32_t* row = lens_.empty() && scene_.panes.empty() ? buffer_.face_row(v) : nullptr;
   for (int u = 0; u < camera_.width; ++u) {
+    if (row != nullptr && row[u] >= 0 && row[u] < static_cast<std::int32_t>(scene_.faces.size())) {
+      const int first = u;
+      while (u + 1 < camera_.width && row[u + 1] == row[first]) ++u;
+      const auto i = static_cast<std::size_t>(row[first]);
+      look_at_run(camera_, buffer_.views()[i].inverse_depth, v, first, u + 1, out);
+      std::fill(&out.label.at(first, v), &out.label.at(u, v) + 1,
+                static_cast<std::uint8_t>(scene_.faces[i].label));
+      if (instance != nullptr)
+        std::fill(&instance->at(first, v), &instance->at(u, v) + 1, scene_.faces[i].instance);
+      continue;
+    }
     const Eigen::Vector2d at =
         lens_.empty() ? Eigen::Vector2d(u, v) : Eigen::Vector2d(lens_.front().at(0, u, v).cast<double>());
     const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);

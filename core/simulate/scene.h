@@ -115,12 +115,25 @@ struct DoorGeometry {
   Eigen::Vector2d normal;  // of the first room's wall, into the first room
   double thickness = 0;    // of the wall between
   double z = 0, width = 0, height = 0;
-  std::uint16_t instance = 0, leaf_instance = 0;
+  std::uint16_t instance = 0, leaf_instance = 0, second_leaf_instance = 0;
 };
 
 struct WindowGeometry {
   int room = 0;
   Eigen::Vector3d center;
+  double width = 0, height = 0;
+  std::uint16_t instance = 0;
+};
+
+struct PartitionGeometry {
+  int room = 0;
+  Eigen::Vector3d from, to;  // on the floor
+  std::uint16_t instance = 0;
+};
+
+struct MirrorGeometry {
+  int room = 0;
+  Eigen::Vector3d center, normal;
   double width = 0, height = 0;
   std::uint16_t instance = 0;
 };
@@ -157,6 +170,9 @@ struct Scene {
   std::vector<DoorGeometry> doors;
   std::vector<WindowGeometry> windows;
   std::vector<MarkerGeometry> markers;
+  std::vector<PartitionGeometry> partitions;
+  std::vector<MirrorGeometry> wall_mirrors;
+  std::vector<std::uint16_t> moving;  // instances of the plan's movers, in its order
   std::vector<Solid> solids;
   std::vector<Light> lights;
   CameraPath path;

@@ -54,6 +54,27 @@ int Shader::level(float u, float v, float z, float dither) const {
   return std::clamp(static_cast<int>(std::floor(level)), 0, texture->level_count() - 1);
 }
 
+// Eight pixels whose level and light's course are known; every step as it is done for one.
+static void shade_batch(const Shader& shader, const float* inverse_depth, int u0, float y, int level,
+                        float light, float light_step, float* colour) {
+  float s[Texture::batch], t[Texture::batch], lights[Texture::batch];
+  for (int i = 0; i < Texture::batch; ++i) {
+    const float x = static_cast<float>(u0 + i), z = 1 / inverse_depth[u0 + i];
+    const float sm = shader.s.at(x, y) * z - shader.s_shift, tm = shader.t.at(x, y) * z - shader.t_shift;
+    s[i] = sm * shader.s_scale + shader.s_offset;
+    t[i] = tm * shader.t_scale + shader.t_offset;
+  }
+  for (float& l : lights) l = light, light += light_step;
+  Texture::Batch c;
+  shader.texture->sample_batch(s, t, level, c);
+  float* out = colour + 3 * u0;
+  for (int i = 0; i < Texture::batch; ++i) {
+    out[3 * i] += lights[i] * c.r[i];
+    out[3 * i + 1] += lights[i] * c.g[i];
+    out[3 * i + 2] += lights[i] * c.b[i];
+  }
+}
+
 void shade_run(const Shader& shader, const float* inverse_depth, int begin, int end, int v, int sample,
                float* colour) {
   const float y = static_cast<float>(v);
@@ -71,6 +92,10 @@ void shade_run(const Shader& shader, const float* inverse_depth, int begin, int 
     float light = light_at(shader.face->lightmap, s0, t0);
     const float step =
         last > u0 ? (light_at(shader.face->lightmap, s1, t1) - light) / static_cast<float>(last - u0) : 0.0f;
+    if (u1 - u0 == Texture::batch) {
+      shade_batch(shader, inverse_depth, u0, y, level, light, step, colour);
+      continue;
+    }
     for (int u = u0; u < u1; ++u) {
       const auto [s, t] = place(u, 1 / inverse_depth[u]);
       const Colour c = shader.texture->sample(s * shader.s_scale + shader.s_offset,

@@ -129,6 +129,17 @@ def simulate(
             autocompletion=completion.chosen_from("line", "ring", "star", "storeys"),
         ),
     ] = None,
+    drawn: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KIND",
+            help="Instead of PLAN: flat or office with glass, mirrors, shut doors, people, drawn by --seed.",
+            autocompletion=completion.chosen_from("flat", "office"),
+        ),
+    ] = None,
+    robot: Annotated[
+        bool, typer.Option("--robot", help="The camera of --drawn is on a robot, 0.3 m above the floor.")
+    ] = False,
     rooms: Annotated[int | None, typer.Option(help="Offices of --building; 12 unless given.")] = None,
     furnishings: Annotated[
         int | None,
@@ -138,7 +149,7 @@ def simulate(
         int | None, typer.Option(help="Storeys of --building storeys; 2 unless given.")
     ] = None,
     seed: Annotated[
-        int, typer.Option(help="Which draw of the sensor's noise, and of the building with --building.")
+        int, typer.Option(help="Which draw of the sensor's noise, and of the building or the drawn rooms.")
     ] = 0,
     noise_seed: Annotated[
         int | None, typer.Option(help="Draw of the noise alone, if it is not --seed's.")
@@ -174,6 +185,9 @@ def simulate(
     labels_every: Annotated[
         int, typer.Option(min=0, help="Class and instance images with each n-th frame; 0: none.")
     ] = 5,
+    motion: Annotated[
+        bool, typer.Option("--motion", help="Add imu.txt (200 Hz) and odometry.txt (wheels, 50 Hz).")
+    ] = False,
     workers: Annotated[int | None, typer.Option(min=1, help="Threads; at most 4 unless given.")] = None,
     overwrite: Annotated[
         bool,
@@ -186,7 +200,7 @@ def simulate(
         from vsgraphs.cli.make_sequence import Looks, make_sequence, out_folder
         from vsgraphs.simulate import Output
 
-        choice = PlanChoice(plan, building, rooms, furnishings, storeys, seed)
+        choice = PlanChoice(plan, building, rooms, furnishings, storeys, seed, drawn, robot)
         if plan_only is not None:
             write_plan(choice, plan_only, overwrite=overwrite, with_out=out is not None)
             return
@@ -196,6 +210,7 @@ def simulate(
             every=every,
             image_format=image_format,
             labels_every=labels_every,
+            motion=motion,
             workers=workers,
             overwrite=overwrite,
         )

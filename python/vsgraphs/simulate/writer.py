@@ -15,7 +15,9 @@ from vsgraphs.compiled import core
 from vsgraphs.plans import LoadedPlan
 from vsgraphs.simulate.camera import SimulatedCamera
 from vsgraphs.simulate.folder import MARK
+from vsgraphs.simulate.motion import write_motion
 from vsgraphs.simulate.options import Output
+from vsgraphs.simulate.png import write_grey_png
 from vsgraphs.simulate.stream import TIMESTAMP_OFFSET_S, Shot
 
 
@@ -52,11 +54,11 @@ class SequenceWriter:
             rgb.save(self._folder / "rgb" / f"{shot.rgb_stamp}.jpg", quality=self._options.jpeg_quality)
         else:
             rgb.save(self._folder / "rgb" / f"{shot.rgb_stamp}.png", compress_level=1)
-        _save_png(frame.depth, self._folder / "depth" / f"{shot.depth_stamp}.png")
+        write_grey_png(frame.depth, self._folder / "depth" / f"{shot.depth_stamp}.png")
         has_labels = self._options.labels_every > 0 and number % self._options.labels_every == 0
         if has_labels:
-            _save_png(frame.label, self._folder / "label" / f"{shot.rgb_stamp}.png")
-            _save_png(frame.instance, self._folder / "instance" / f"{shot.rgb_stamp}.png")
+            write_grey_png(frame.label, self._folder / "label" / f"{shot.rgb_stamp}.png")
+            write_grey_png(frame.instance, self._folder / "instance" / f"{shot.rgb_stamp}.png")
         pose, q = frame.world_from_camera, frame.quaternion_xyzw
         if shot.source != shot.index:
             pose, q = self._local.renderer.pose(shot.index)
@@ -88,6 +90,9 @@ class SequenceWriter:
                 + [f"{s} label/{s}.png instance/{s}.png" for s in labelled],
             )
         _lines(folder / "camera.yaml", self._camera_lines(loaded))
+        if self._options.motion:
+            until = (records[-1].shot.index + 0.5) / loaded.plan.fps
+            write_motion(self._scene, folder, until, self._noise.seed)
         truth, length = self._truth(records, loaded)
         (folder / MARK).write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
         return length
@@ -145,10 +150,6 @@ def _lens_lines(noise: Any) -> list[str]:
     if noise.lens == "radial_tangential":
         return [f"distortion: [{', '.join(map(str, (*noise.lens_k, 0.0, 0.0, 0.0, 0.0, 0.0)[:5]))}]"]
     return [f"model: {noise.lens}", f"model_coefficients: [{', '.join(map(str, noise.lens_k))}]"]
-
-
-def _save_png(pixels: np.ndarray[Any, Any], path: Path) -> None:
-    Image.fromarray(pixels).save(path, compress_level=1)
 
 
 def _pose_line(record: Record) -> str:
