@@ -26,9 +26,9 @@ TEST(CameraEffects, RollingRowsAreThoseOfThePoseAtTheirTime) {
   const Camera camera = small_camera();
   Plan plan = turning_plan();
   NoiseOptions rolling = NoiseOptions::none();
-  rolling.rolling_shutter_s = 0.0595;  // half a millisecond a row: bands of 8 rows are 4 ms apart
+  rolling.rolling_shutter_s = 0.0595;  // half a millisecond a row
   Plan fine = plan;
-  fine.fps = 240;  // ... and a frame of 1/240 s passes within one
+  fine.fps = 240;
   const Scene scene = build_scene(plan), often = build_scene(fine);
   const int index = 60;
   const RenderedFrame bent = Renderer(scene, camera, rolling).render(index);
@@ -36,7 +36,7 @@ TEST(CameraEffects, RollingRowsAreThoseOfThePoseAtTheirTime) {
   const double start = index / plan.fps;
   for (int band = 0; band < 15; band += 7) {
     const int row = 8 * band + 3;
-    const double later = rolling.rolling_shutter_s * ((8 * band + 3.5) / (camera.height - 1) - 0.5);
+    const double later = rolling.rolling_shutter_s * ((8 * band + 3.0) / (camera.height - 1) - 0.5);
     const RenderedFrame at_its_time = still.render(static_cast<int>(std::lround((start + later) * fine.fps)));
     const RenderedFrame at_the_middle = still.render(static_cast<int>(std::lround(start * fine.fps)));
     double same = 0, other = 0;

@@ -80,7 +80,7 @@ Scenery look_through(const ExactDepth& view, const Camera& camera, const GlassAn
           z = pane;
         else if (drawn > 1 - nothing)
           out.lost.at(u, v) = 1;
-        else if (glass.mixed > 0)
+        else if (z > 0)
           z += glass.mixed * (pane - z);
       }
       out.depth_m.at(u, v) = z;

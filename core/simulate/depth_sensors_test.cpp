@@ -157,6 +157,15 @@ TEST(DepthSensors, PanesAreSeenThroughOrNotAtAll) {
   }
 }
 
+TEST(DepthSensors, NothingBehindAPaneIsNotReadAsNearer) {
+  for (const std::string name : {"kinect2", "iphone_lidar"}) {
+    Wall wall(name, 0.0);
+    wall.view.pane = Image<std::uint16_t>(wall.camera.width, wall.camera.height, 7500);
+    wall.view.pane_incidence = Image<float>(wall.camera.width, wall.camera.height, 0.7f);
+    for (const std::uint16_t raw : wall.sensed(name).pixels) ASSERT_TRUE(raw == 0 || raw > 6500) << name;
+  }
+}
+
 TEST(DepthSensors, UnknownOnesAreNamedAgainstTheKnown) {
   try {
     static_cast<void>(NoiseOptions::of("kinect"));

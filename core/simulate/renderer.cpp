@@ -14,7 +14,7 @@ namespace {
 // Offsets within the pixel (a rotated grid).
 constexpr double ray_offsets[rays_per_pixel][2] = {
     {-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}};
-constexpr int band_rows = 8;                            // of a rolling shutter: rows that share a moment
+constexpr double band_s = 0.001;                        // of a rolling shutter: rows within it share a moment
 constexpr float pane_passes = 0.88f, pane_adds = 7.0f;  // light through a pane of glass, and off it
 
 // A row's pixels first..end that see one face straight on: what the general case below works out, in loops without
@@ -72,6 +72,7 @@ template <typename Look>
 void Renderer::each_band(bool rolling, const Look& look) const {
   const int height = camera_.height;
   if (!rolling || noise_.rolling_shutter_s <= 0) return look(0, height, 0.0);
+  const int band_rows = std::max(1, static_cast<int>(band_s * height / noise_.rolling_shutter_s));
   for (int begin = 0; begin < height; begin += band_rows) {
     const int end = std::min(begin + band_rows, height);
     const double middle = 0.5 * (begin + end - 1) / std::max(1, height - 1);

@@ -19,7 +19,6 @@ from vsgraphs.simulate.stream import TIMESTAMP_OFFSET_S
 
 Array = npt.NDArray[np.float64]
 GRAVITY = 9.81
-_STEP_S = 1e-3  # of differences
 
 
 @dataclass(frozen=True)
@@ -42,11 +41,13 @@ class Errors:
 def inertial(scene: Any, duration_s: float, errors: Errors, seed: int) -> tuple[Array, Array]:
     """Times (n,), s, and (n, 6): turn rates, rad/s, and specific force, m/s^2, in the camera's axes."""
     times = np.arange(0.0, duration_s, 1 / errors.imu_hz)
-    before, now, after = (scene.poses(times + shift) for shift in (-_STEP_S, 0.0, _STEP_S))
+    # As a unit does, readings take in what happens between two of them: steps of a walk are short jerks.
+    step = 1 / errors.imu_hz
+    before, now, after = (scene.poses(times + shift) for shift in (-step, 0.0, step))
+    earlier, later = (scene.poses(times + shift)[:, :3, :3] for shift in (-step / 2, step / 2))
     r = now[:, :3, :3]
-    turned = np.einsum("nji,njk->nik", before[:, :3, :3], after[:, :3, :3])
-    rates = rotation_vectors(turned) / (2 * _STEP_S)
-    acceleration = (after[:, :3, 3] - 2 * now[:, :3, 3] + before[:, :3, 3]) / _STEP_S**2
+    rates = rotation_vectors(np.einsum("nji,njk->nik", earlier, later)) / step
+    acceleration = (after[:, :3, 3] - 2 * now[:, :3, 3] + before[:, :3, 3]) / step**2
     force = np.einsum("nji,nj->ni", r, acceleration + np.array([0.0, 0.0, GRAVITY]))
     exact = np.hstack([rates, force])
     return times, exact + _errors(len(times), errors, np.random.default_rng([seed, 1]))

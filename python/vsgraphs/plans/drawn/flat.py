@@ -44,7 +44,7 @@ def add_flat(place: Place, draw: Draw) -> None:
                 visits.append((hall.at(space.frame, door)[0], space, door))
             x += sizes[name][0] + WALL_M
     bay, door = _bay(hall)
-    in_hall = hall.add(draw.choose(("wood", "tiles", "terrazzo")), draw.uniform(0.3, 0.9))
+    in_hall = hall.add(draw.choose(("wood", "tiles", "terrazzo")), draw.uniform(0.35, 1.1))
     _end_of_hall(in_hall, draw)
     _walk(hall, visits, (bay, door))
 
@@ -114,7 +114,7 @@ def _living(hall: Hall, name: str, side: str, x: float, size: tuple[float, float
 
 def _bedroom(hall: Hall, name: str, side: str, x: float, size: tuple[float, float]) -> tuple[Space, float]:
     space, door = _room(
-        hall, name, side, x, size, {"height": hall.height, "brightness": hall.draw.uniform(0.2, 0.7)}
+        hall, name, side, x, size, {"height": hall.height, "brightness": hall.draw.uniform(0.3, 1.0)}
     )
     w, d = size
     space.stand(2, w / 2, (1.5, 1.35, 0.5), {"kind": "bed"})

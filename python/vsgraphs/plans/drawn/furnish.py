@@ -41,6 +41,9 @@ _FLAT = (
     ("picture", 0.8, 0.55, 1.4, 1.8),
     ("board", 0.9, 0.7, 1.4, 1.7),
     ("notice", 0.21, 0.3, 1.2, 1.8),
+    ("notice", 0.42, 0.3, 1.1, 2.0),
+    ("poster", 0.3, 0.42, 1.0, 1.9),
+    ("board", 0.6, 0.45, 1.2, 1.8),
     ("clock", 0.3, 0.3, 1.8, 2.1),
     ("switch", 0.08, 0.08, 1.05, 1.1),
     ("socket", 0.08, 0.08, 0.3, 0.35),
@@ -79,14 +82,14 @@ def _stand_with_clutter(space: Space, wall: int, along: float, what: tuple[str, 
         place += w / 2
         if place + w / 2 > along + length / 2:
             return
-        if space.draw.chance(0.6):
+        if space.draw.chance(0.85):
             deep = GAP_M + depth / 2
             at = ((place, deep), (space.width - deep, place), (place, space.depth - deep), (deep, place))[
                 wall
             ]
             yaw = (0.0, 90.0, 180.0, -90.0)[wall]
             space.box(at, (w, min(d, depth - 0.04), h), {"kind": name, "z": height, "yaw_deg": yaw})
-        place += w / 2 + space.draw.uniform(0.04, 0.25)
+        place += w / 2 + space.draw.uniform(0.01, 0.12)
 
 
 def shelve(space: Space, wall: int) -> None:
@@ -104,7 +107,7 @@ def shelve(space: Space, wall: int) -> None:
 def clutter_walls(space: Space, crowd: float, walls: tuple[int, ...] = (0, 1, 2, 3)) -> None:
     """Pictures, boards, notices, switches, wherever nothing else is."""
     for wall in walls:
-        for _ in range(round(1.5 * crowd * space.length(wall))):
+        for _ in range(round(4 * crowd * space.length(wall))):
             kind, width, height, low, high = space.draw.choose(_FLAT)
             z = space.draw.uniform(low, high)
             along = space.gap(space.hung[wall], wall, width)

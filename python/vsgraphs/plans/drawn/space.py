@@ -83,14 +83,22 @@ class Space:
         """Flat on a wall, `along` its middle."""
         width = item["width"]
         self.hung[wall].append((along - width / 2 - 0.04, along + width / 2 + 0.04))
-        hung = {"room": self.room, "wall": self.left_wall if wall == 3 else wall, "along": self._plan_along(wall, along)}
+        hung = {
+            "room": self.room,
+            "wall": self.left_wall if wall == 3 else wall,
+            "along": self._plan_along(wall, along),
+        }
         self.place.site.posters.append({**hung, "seed": self.draw.seed(), **item})
 
     def window(self, wall: int, along: float, item: Item) -> None:
         """In a wall, `along` its middle."""
         half = item["width"] / 2 + 0.12
         self.hung[wall].append((along - half, along + half + (0.45 if item.get("curtain") else 0)))
-        placed = {"room": self.room, "wall": self.left_wall if wall == 3 else wall, "along": self._plan_along(wall, along)}
+        placed = {
+            "room": self.room,
+            "wall": self.left_wall if wall == 3 else wall,
+            "along": self._plan_along(wall, along),
+        }
         self.place.site.windows.append({**placed, "seed": self.draw.seed(), **item})
 
     def partition(self, start: Point, end: Point, item: Item) -> None:
