@@ -74,7 +74,7 @@ def view(
 
 def best_moment(plan: dict[str, Any], wanted: str) -> float:
     """Seconds into the walk when most of a class is in view, looked for once a second."""
-    small = {"width": 80, "height": 60, "fx": 66.0, "fy": 66.0, "cx": 39.5, "cy": 29.5}
+    small = {"width": 96, "height": 72, "fx": 79.0, "fy": 79.0, "cx": 47.5, "cy": 35.5}
     loaded = load_plan({**plan, "camera": small})
     camera = simulated_camera(loaded, sensor="clean")
     scene = core().build_scene(loaded.plan)
