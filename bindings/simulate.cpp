@@ -81,7 +81,25 @@ void bind_noise(nb::module_& m) {
       .def_rw("motion_blur", &NoiseOptions::motion_blur)
       .def_rw("exposure_time_s", &NoiseOptions::exposure_time_s)
       .def_rw("image_noise", &NoiseOptions::image_noise)
-      .def_rw("image_sigma", &NoiseOptions::image_sigma);
+      .def_rw("image_sigma", &NoiseOptions::image_sigma)
+      .def_static("of", &NoiseOptions::of, "sensor"_a,
+                  "What a sensor does, by its name; InputError names those there are.")
+      .def_ro("sensor", &NoiseOptions::sensor, "how depth is measured")
+      .def_rw("auto_exposure", &NoiseOptions::auto_exposure)
+      .def_rw("exposure_max_s", &NoiseOptions::exposure_max_s)
+      .def_rw("rolling_shutter_s", &NoiseOptions::rolling_shutter_s)
+      .def_rw("depth_delay_s", &NoiseOptions::depth_delay_s)
+      .def_rw("misregistration_u_px", &NoiseOptions::misregistration_u_px)
+      .def_rw("misregistration_v_px", &NoiseOptions::misregistration_v_px)
+      .def_rw("roll_deg", &NoiseOptions::roll_deg)
+      .def_prop_rw(
+          "lens", [](const NoiseOptions& o) { return o.lens.model; },
+          [](NoiseOptions& o, const std::string& model) { o.lens.model = model; })
+      .def_prop_rw(
+          "lens_k", [](const NoiseOptions& o) { return o.lens.k; },
+          [](NoiseOptions& o, const std::vector<double>& k) { o.lens.k = k; });
+  m.def("sensor_names", &sensor_names, "Values of NoiseOptions.of().");
+  m.def("sensor_camera", &sensor_camera, "sensor"_a, "The camera of a sensor, where a plan names none.");
 }
 
 }  // namespace
@@ -94,14 +112,34 @@ void bind_simulate(nb::module_& m) {
       .def_prop_ro("frame_count", &Scene::frame_count)
       .def_prop_ro("duration_s", [](const Scene& s) { return s.path.duration_s(); })
       .def_prop_ro("face_count", [](const Scene& s) { return s.faces.size(); })
-      .def_prop_ro("plan", [](const Scene& s) { return s.plan; });
+      .def_prop_ro("plan", [](const Scene& s) { return s.plan; })
+      .def(
+          "poses",
+          [](const Scene& s, const std::vector<double>& times_s) {
+            std::vector<double> rows;
+            for (const double t : times_s) append_rows(rows, s.path.world_from_camera(t));
+            return to_numpy(std::move(rows), {times_s.size(), 4, 4});
+          },
+          "times_s"_a,
+          "(n, 4, 4) float64: world_from_camera at seconds since the start, held before and after the walk.");
   m.def("build_scene", &build_scene, "plan"_a, nb::call_guard<nb::gil_scoped_release>(),
         "Raises InputError naming the plan's key that cannot be built or walked.");
   nb::class_<Renderer>(m, "Renderer", "Renders frames of a scene in any order; use one per thread.")
       .def(nb::init<const Scene&, const Camera&, const NoiseOptions&>(), "scene"_a, "camera"_a, "noise"_a,
            nb::keep_alive<1, 2>())
       .def("render", &Renderer::render, "index"_a, nb::call_guard<nb::gil_scoped_release>(),
-           "Frame `index` of the walk at the plan's rate. Same arguments, same bytes. The GIL is released.");
+           "Frame `index` of the walk at the plan's rate. Same arguments, same bytes. The GIL is released.")
+      .def(
+          "pose",
+          [](const Renderer& r, int index) {
+            const Se3 pose = r.pose(index);
+            std::vector<double> rows;
+            append_rows(rows, pose);
+            const Eigen::Vector4d q = pose.quaternion().coeffs();
+            return nb::make_tuple(to_numpy(std::move(rows), {4, 4}),
+                                  std::array<double, 4>{q[0], q[1], q[2], q[3]});
+          },
+          "index"_a, "world_from_camera (4, 4) and its rotation as x, y, z, w of frame `index`.");
   nb::class_<ObservationCounter>(m, "ObservationCounter",
                                  "Counts which surfaces were seen, in any order of frames.")
       .def(nb::init<const Scene&>(), "scene"_a, nb::keep_alive<1, 2>())

@@ -59,6 +59,11 @@ void translated(nb::class_<Class>& cls, const char* name, Value Class::* member)
 }
 
 void bind_room(nb::module_& m) {
+  nb::class_<SlopePlan>(m, "SlopePlan")
+      .def(nb::init<>())
+      .def_rw("wall", &SlopePlan::wall)
+      .def_rw("knee", &SlopePlan::knee)
+      .def_rw("reach", &SlopePlan::reach);
   auto room = nb::class_<RoomPlan>(m, "RoomPlan").def(nb::init<>());
   room.def_rw("id", &RoomPlan::id)
       .def_rw("kind", &RoomPlan::kind)
@@ -69,18 +74,22 @@ void bind_room(nb::module_& m) {
       .def_rw("skirting", &RoomPlan::skirting)
       .def_rw("floor", &RoomPlan::floor)
       .def_rw("ceiling", &RoomPlan::ceiling)
-      .def_rw("brightness", &RoomPlan::brightness);
+      .def_rw("brightness", &RoomPlan::brightness)
+      .def_rw("slope", &RoomPlan::slope, nb::arg("value").none());
   translated(room, "polygon", &RoomPlan::polygon);
   translated(room, "wall_colour", &RoomPlan::wall_colour);
   translated(room, "lamps", &RoomPlan::lamps);
 }
 
 void bind_openings(nb::module_& m) {
-  nb::class_<DoorLeafPlan>(m, "DoorLeafPlan")
-      .def(nb::init<>())
+  auto leaf = nb::class_<DoorLeafPlan>(m, "DoorLeafPlan");
+  leaf.def(nb::init<>())
       .def_rw("room", &DoorLeafPlan::room)
       .def_rw("angle_deg", &DoorLeafPlan::angle_deg)
-      .def_rw("hinge", &DoorLeafPlan::hinge);
+      .def_rw("hinge", &DoorLeafPlan::hinge)
+      .def_rw("set_back", &DoorLeafPlan::set_back)
+      .def_rw("pair", &DoorLeafPlan::pair);
+  translated(leaf, "turns", &DoorLeafPlan::turns);
   auto door = nb::class_<DoorPlan>(m, "DoorPlan").def(nb::init<>());
   door.def_rw("rooms", &DoorPlan::rooms)
       .def_rw("width", &DoorPlan::width)
@@ -97,6 +106,7 @@ void bind_openings(nb::module_& m) {
       .def_rw("sill", &WindowPlan::sill)
       .def_rw("radiator", &WindowPlan::radiator)
       .def_rw("curtain", &WindowPlan::curtain)
+      .def_rw("view", &WindowPlan::view)
       .def_rw("seed", &WindowPlan::seed);
 }
 
@@ -138,6 +148,31 @@ void bind_things(nb::module_& m) {
   translated(stairs, "to", &StairsPlan::to);
 }
 
+void bind_partitions_and_movers(nb::module_& m) {
+  auto partition = nb::class_<PartitionPlan>(m, "PartitionPlan").def(nb::init<>());
+  partition.def_rw("room", &PartitionPlan::room)
+      .def_rw("height", &PartitionPlan::height)
+      .def_rw("thickness", &PartitionPlan::thickness)
+      .def_rw("kind", &PartitionPlan::kind)
+      .def_rw("mullions", &PartitionPlan::mullions);
+  translated(partition, "from_", &PartitionPlan::from);
+  translated(partition, "to", &PartitionPlan::to);
+  auto mover = nb::class_<MoverPlan>(m, "MoverPlan").def(nb::init<>());
+  mover.def_rw("kind", &MoverPlan::kind)
+      .def_rw("room", &MoverPlan::room)
+      .def_rw("pose", &MoverPlan::pose)
+      .def_rw("speed", &MoverPlan::speed)
+      .def_rw("start_s", &MoverPlan::start_s)
+      .def_rw("yaw_deg", &MoverPlan::yaw_deg)
+      .def_rw("seed", &MoverPlan::seed);
+  translated(mover, "way", &MoverPlan::way);
+  nb::class_<RobotPlan>(m, "RobotPlan")
+      .def(nb::init<>())
+      .def_rw("width", &RobotPlan::width)
+      .def_rw("ahead", &RobotPlan::ahead)
+      .def_rw("below", &RobotPlan::below);
+}
+
 void bind_path(nb::module_& m) {
   auto waypoint = nb::class_<WaypointPlan>(m, "WaypointPlan").def(nb::init<>());
   waypoint.def_rw("room", &WaypointPlan::room)
@@ -158,7 +193,8 @@ void bind_path(nb::module_& m) {
       .def_rw("smooth_s", &PathPlan::smooth_s)
       .def_rw("clearance", &PathPlan::clearance)
       .def_rw("closed", &PathPlan::closed)
-      .def_rw("waypoints", &PathPlan::waypoints);
+      .def_rw("waypoints", &PathPlan::waypoints)
+      .def_rw("robot", &PathPlan::robot, nb::arg("value").none());
 }
 
 }  // namespace
@@ -167,6 +203,7 @@ void bind_plan(nb::module_& m) {
   bind_room(m);
   bind_openings(m);
   bind_things(m);
+  bind_partitions_and_movers(m);
   bind_path(m);
   nb::class_<Plan>(m, "Plan", "A place and a walk through it; docs/simulator.md explains every field.")
       .def(nb::init<>())
@@ -181,6 +218,8 @@ void bind_plan(nb::module_& m) {
       .def_rw("markers", &Plan::markers)
       .def_rw("boxes", &Plan::boxes)
       .def_rw("stairs", &Plan::stairs)
+      .def_rw("partitions", &Plan::partitions)
+      .def_rw("movers", &Plan::movers)
       .def_rw("path", &Plan::path);
 }
 

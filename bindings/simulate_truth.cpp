@@ -45,6 +45,13 @@ nb::dict room_truth(const Scene& scene, const ObservationCounter& seen, std::siz
   d["ceiling_inst"] = geometry.ceiling_instance;
   d["visited"] = seen.visited(static_cast<int>(r));
   d["floor_observed_frames"] = seen.frames_seen(geometry.floor_instance);
+  if (plan.slope) {
+    nb::dict slope;
+    slope["wall"] = plan.slope->wall;
+    slope["knee"] = plan.slope->knee;
+    slope["reach"] = plan.slope->reach;
+    d["slope"] = slope;
+  }
   return d;
 }
 
@@ -86,6 +93,13 @@ nb::dict door_truth(const Scene& scene, std::size_t index) {
     l["inst"] = door.leaf_instance;
     l["room"] = leaf->room;
     l["angle_deg"] = leaf->angle_deg;
+    if (leaf->set_back > 0) l["set_back"] = leaf->set_back;
+    if (leaf->pair) l["second_inst"] = door.second_leaf_instance;
+    if (!leaf->turns.empty()) {
+      nb::list turns;
+      for (const auto& turn : leaf->turns) turns.append(numbers({turn.x(), turn.y()}));
+      l["turns"] = turns;
+    }
     d["leaf"] = l;
   }
   return d;
@@ -100,6 +114,49 @@ nb::dict window_truth(const Scene& scene, std::size_t index) {
   d["center"] = numbers({w.center.x(), w.center.y(), w.center.z()});
   d["width"] = w.width;
   d["height"] = w.height;
+  if (const auto& view = scene.plan.windows[index].view; view != "picture") d["view"] = view;
+  return d;
+}
+
+nb::dict mirror_truth(const Scene& scene, std::size_t index) {
+  const MirrorGeometry& m = scene.wall_mirrors[index];
+  nb::dict d;
+  d["id"] = index;
+  d["inst"] = m.instance;
+  d["room"] = item(scene.plan.rooms, m.room).id;
+  d["center"] = numbers({m.center.x(), m.center.y(), m.center.z()});
+  d["n"] = numbers({m.normal.x(), m.normal.y(), m.normal.z()});
+  d["width"] = m.width;
+  d["height"] = m.height;
+  return d;
+}
+
+nb::dict partition_truth(const Scene& scene, std::size_t index) {
+  const PartitionGeometry& p = scene.partitions[index];
+  const PartitionPlan& plan = scene.plan.partitions[index];
+  nb::dict d;
+  d["id"] = index;
+  d["inst"] = p.instance;
+  d["room"] = plan.room;
+  d["kind"] = plan.kind;
+  d["p0"] = numbers({p.from.x(), p.from.y(), p.from.z()});
+  d["p1"] = numbers({p.to.x(), p.to.y(), p.to.z()});
+  d["height"] = plan.height;
+  d["thickness"] = plan.thickness;
+  return d;
+}
+
+nb::dict mover_truth(const Scene& scene, std::size_t index) {
+  const MoverPlan& plan = scene.plan.movers[index];
+  nb::dict d;
+  nb::list way;
+  for (const auto& p : plan.way) way.append(numbers({p.x(), p.y()}));
+  d["id"] = index;
+  d["inst"] = scene.moving[index];
+  d["kind"] = plan.kind;
+  d["room"] = plan.room;
+  if (plan.kind == "person") d["pose"] = plan.pose;
+  d["way"] = way;
   return d;
 }
 
@@ -141,6 +198,12 @@ nb::dict level_plane(const Scene& scene, std::size_t r, bool ceiling) {
   return d;
 }
 
+bool occurs(const Scene& scene, SceneClass label) {
+  for (const Instance& instance : scene.instances)
+    if (instance.label == label) return true;
+  return false;
+}
+
 template <typename Make>
 nb::list listed(std::size_t count, const Make& make) {
   nb::list out;
@@ -161,10 +224,18 @@ nb::dict scene_truth(const Scene& scene, const ObservationCounter& seen) {
   // Only where there are any: plans without markers keep their files to the byte.
   if (!scene.markers.empty())
     d["markers"] = listed(scene.markers.size(), [&](std::size_t i) { return marker_truth(scene, i); });
+  if (!scene.wall_mirrors.empty())
+    d["mirrors"] = listed(scene.wall_mirrors.size(), [&](std::size_t i) { return mirror_truth(scene, i); });
+  if (!scene.partitions.empty())
+    d["partitions"] =
+        listed(scene.partitions.size(), [&](std::size_t i) { return partition_truth(scene, i); });
+  if (!scene.moving.empty())
+    d["movers"] = listed(scene.moving.size(), [&](std::size_t i) { return mover_truth(scene, i); });
   d["instances"] = listed(scene.instances.size(), [&](std::size_t i) { return instance_truth(scene, i); });
   nb::dict classes;
   for (std::size_t i = 0; i < scene_class_names.size(); ++i)
-    classes[std::string(scene_class_names[i]).c_str()] = i;
+    if (i < first_rare_class || occurs(scene, static_cast<SceneClass>(i)))
+      classes[std::string(scene_class_names[i]).c_str()] = i;
   d["classes"] = classes;
   d["adjacency"] = listed(scene.doors.size(), [&](std::size_t i) {
     nb::list rooms;

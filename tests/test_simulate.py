@@ -344,7 +344,7 @@ def test_files_that_are_no_plans(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         ({"noise": "loud"}, "noise must be one of sensor, clean"),
-        ({"noise": {"blurr": True}}, "unknown noise option 'blurr'"),
+        ({"noise": {"blurr": True}}, "unknown effect 'blurr'"),
         ({"noise": {"baseline_m": -1}}, "noise.baseline_m: must lie in"),
         ({"seed": -1}, "seed must lie in"),
         ({"frames": 0}, "frames must be at least 1"),

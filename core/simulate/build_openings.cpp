@@ -99,7 +99,11 @@ void add_door(SceneAssembly& builder, std::size_t index) {
     add_casing(builder, tag, side, opening_of(side));
   }
   const auto& leaf = scene.plan.doors[index].leaf;
-  if (leaf) add_leaf(builder, *leaf, scene.doors[index], number);
+  if (!leaf) return;
+  if (leaf->turns.empty() && leaf->set_back == 0 && !leaf->pair)
+    add_leaf(builder, *leaf, scene.doors[index], number);
+  else
+    add_turning_leaf(builder, *leaf, scene.doors[index], number);
 }
 
 void add_window_frame(SceneAssembly& builder, const Tag& tag, const Stand& stand, const Opening& o) {
@@ -129,10 +133,13 @@ void add_window(SceneAssembly& builder, std::size_t index) {
   window.instance = pane.instance;
   const Tag frame = builder.add_instance(SceneClass::window, r, "frame");
   const Eigen::Vector3d x = stand.direction(Eigen::Vector3d::UnitX());
-  builder
-      .add_rectangle(pane, stand.at({o.along_max, -pane_depth_m, o.z_min}), -x, Eigen::Vector3d::UnitZ(),
-                     {plan.width, plan.height}, {"outside", plan.seed, {255, 255, 255}})
-      .emission = 1.0f;
+  if (plan.view == "picture")
+    builder
+        .add_rectangle(pane, stand.at({o.along_max, -pane_depth_m, o.z_min}), -x, Eigen::Vector3d::UnitZ(),
+                       {plan.width, plan.height}, {"outside", plan.seed, {255, 255, 255}})
+        .emission = 1.0f;
+  else
+    add_window_view(builder, plan, pane, stand, o, pane_depth_m);
   add_reveal(builder, frame, stand, o, niche_depth_m, white_wood, white_wood, frame);
   add_window_frame(builder, frame, stand, o);
   if (plan.radiator && plan.sill > 0.5) {

@@ -14,10 +14,30 @@ double thickness_of(const std::string& kind) {
   return 0.004;
 }
 
+void add_mirror(SceneAssembly& builder, const WallSpot& spot) {
+  const Tag tag = builder.add_instance(SceneClass::mirror, spot.room, "mirror");
+  const Tag frame = builder.add_instance(SceneClass::picture, spot.room, "mirror frame");
+  const double depth = 0.025, rim = 0.015;
+  const Eigen::Vector3d front(spot.high.x(), depth, spot.high.z());
+  builder.add_box(frame, spot.stand, spot.low, front, {"lacquer", 1, {84, 84, 86}},
+                  all_sides & ~(BoxSide::back | BoxSide::front));
+  const Eigen::Vector3d x = spot.stand.direction(Eigen::Vector3d::UnitX());
+  const Eigen::Vector2d size(spot.high.x() - spot.low.x(), spot.high.z() - spot.low.z());
+  Face& face = builder.add_rectangle(tag, spot.stand.at({spot.high.x(), depth - rim, spot.low.z()}), -x,
+                                     Eigen::Vector3d::UnitZ(), size, {"lacquer", 1, {170, 176, 180}});
+  face.optics = Optics::mirror;
+  const Eigen::Vector3d middle =
+      0.5 * (spot.low + Eigen::Vector3d(spot.high.x(), 2 * depth - 2 * rim, spot.high.z()));
+  builder.scene().wall_mirrors.push_back({spot.room, spot.stand.at(middle),
+                                          spot.stand.direction(Eigen::Vector3d::UnitY()), size.x(), size.y(),
+                                          tag.instance});
+}
+
 void add_poster(SceneAssembly& builder, std::size_t index) {
   const PosterPlan& plan = builder.plan().posters[index];
   const WallSpot spot = spot_on_wall(builder, "posters[" + std::to_string(index) + "]", plan.room, plan.wall,
                                      {plan.along, plan.z}, {plan.width, plan.height});
+  if (plan.kind == "mirror") return add_mirror(builder, spot);
   const bool plate = plan.kind == "socket" || plan.kind == "switch";
   const Tag tag = builder.add_instance(plate ? SceneClass::misc : SceneClass::picture, spot.room, plan.kind);
   const Eigen::Vector3d front(spot.high.x(), thickness_of(plan.kind), spot.high.z());
@@ -50,7 +70,7 @@ WallSpot spot_on_wall(const SceneAssembly& builder, const std::string& key, cons
 }
 
 std::vector<std::string> poster_kinds() {
-  return {"poster", "picture", "board", "clock", "notice", "socket", "switch"};
+  return {"poster", "picture", "board", "clock", "notice", "socket", "switch", "mirror"};
 }
 
 void build_posters(SceneAssembly& builder) {

@@ -19,6 +19,64 @@ Material floor_material(const RoomPlan& room, std::uint64_t seed) {
   return {"tiles", seed, {182, 172, 160}};
 }
 
+// The part of a polygon where limit . (x, y, 1) >= 0.
+Polygon2 clipped(const Polygon2& polygon, const Eigen::Vector3d& limit) {
+  Polygon2 out;
+  const auto over = [&](const Eigen::Vector2d& p) { return limit.dot(p.homogeneous()); };
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    if (over(a) >= 0) out.push_back(a);
+    if ((over(a) >= 0) != (over(b) >= 0)) out.push_back(a + over(a) / (over(a) - over(b)) * (b - a));
+  }
+  return out;
+}
+
+// Adds the part of the ceiling over `part`, which is flat there.
+void add_ceiling_part(SceneAssembly& builder, const RoomPlan& room, const Tag& tag, const Polygon2& part,
+                      const Eigen::Vector2d& away) {
+  if (part.size() < 3) return;
+  const auto lifted = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector3d(p.x(), p.y(), room.z_floor + ceiling_height(room, p));
+  };
+  // s along the knee wall, t towards it and down: the normal points into the room.
+  const Eigen::Vector3d s(-away.y(), away.x(), 0);
+  const Eigen::Vector2d inside = centroid(part);
+  const Eigen::Vector3d t = (lifted(inside + 1e-3 * away) - lifted(inside)).normalized();
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  Polygon2 flat;
+  for (const Eigen::Vector2d& p : part) {
+    const Eigen::Vector3d at = lifted(p) - lifted(inside);
+    flat.emplace_back(s.dot(at), t.dot(at));
+    low = low.cwiseMin(flat.back()), high = high.cwiseMax(flat.back());
+  }
+  for (Eigen::Vector2d& p : flat) p -= low;
+  const Material cover{room.ceiling == "panels" ? "panels" : "paint", builder.plan().seed, {196, 198, 196}};
+  builder.add_face(tag, lifted(inside) + low.x() * s + low.y() * t, s, t, high - low, {flat}, cover);
+}
+
+void add_sloped_ceiling(SceneAssembly& builder, int r, const Tag& tag) {
+  const RoomPlan room = builder.plan().rooms[static_cast<std::size_t>(r)];
+  const auto i = static_cast<std::size_t>(room.slope->wall);
+  const Eigen::Vector2d p0 = room.polygon[i],
+                        along = (room.polygon[(i + 1) % room.polygon.size()] - p0).normalized();
+  const Eigen::Vector2d away(-along.y(), along.x());  // from the knee wall into the room
+  const Eigen::Vector3d beyond(away.x(), away.y(), -away.dot(p0) - room.slope->reach);
+  add_ceiling_part(builder, room, tag, clipped(room.polygon, beyond), away);
+  add_ceiling_part(builder, room, tag, clipped(room.polygon, -beyond), away);
+}
+
+// A wall's upper edge from its p0 back to its p1, as (s, height).
+Polygon2 wall_top(const WallGeometry& wall, const RoomPlan& room) {
+  if (!room.slope) return {{wall.length, wall.height}, {0, wall.height}};
+  Polygon2 top;
+  constexpr int pieces = 64;  // the edge bends once; a thin sliver at the bend does not matter
+  for (int k = 0; k <= pieces; ++k) {
+    const double s = wall.length * (pieces - k) / pieces;
+    top.emplace_back(s, ceiling_height(room, wall.p1 - s * wall.along));
+  }
+  return top;
+}
+
 void add_horizontal_faces(SceneAssembly& builder, int r, RoomGeometry& geometry) {
   const RoomPlan room = builder.plan().rooms[static_cast<std::size_t>(r)];
   Eigen::Vector2d low = room.polygon.front(), high = low;
@@ -35,13 +93,17 @@ void add_horizontal_faces(SceneAssembly& builder, int r, RoomGeometry& geometry)
                    floor_material(room, builder.plan().seed));
   const Tag ceiling = builder.add_instance(SceneClass::ceiling, r);
   geometry.ceiling_instance = ceiling.instance;
+  if (room.slope) {
+    add_sloped_ceiling(builder, r, ceiling);
+    return;
+  }
   const Material cover{room.ceiling == "panels" ? "panels" : "paint", builder.plan().seed, {196, 198, 196}};
   builder.add_face(ceiling, {low.x(), high.y(), room.z_floor + room.height}, x, -y, high - low, {from_below},
                    cover);
 }
 
 // The wall's outline seen from the room (s to the right, from p1 to p0): openings that reach the floor are notches.
-std::vector<Polygon2> wall_contours(const WallGeometry& wall) {
+std::vector<Polygon2> wall_contours(const WallGeometry& wall, const RoomPlan& room) {
   std::vector<Opening> notches;
   std::vector<Polygon2> contours(1);
   for (const Opening& o : wall.openings) {
@@ -60,8 +122,8 @@ std::vector<Polygon2> wall_contours(const WallGeometry& wall) {
          Polygon2{{n.along_min, 0}, {n.along_min, n.z_max}, {n.along_max, n.z_max}, {n.along_max, 0}})
       outline.push_back(p);
   }
-  for (const Eigen::Vector2d& p : Polygon2{{wall.length, 0}, {wall.length, wall.height}, {0, wall.height}})
-    outline.push_back(p);
+  outline.emplace_back(wall.length, 0);
+  for (const Eigen::Vector2d& p : wall_top(wall, room)) outline.push_back(p);
   return contours;
 }
 
@@ -92,7 +154,7 @@ void add_walls(SceneAssembly& builder, int r, const RoomGeometry& geometry) {
     const Eigen::Vector3d corner(wall.p1.x(), wall.p1.y(), wall.z_floor),
         s_axis(-wall.along.x(), -wall.along.y(), 0);
     builder.add_face(tag, corner, s_axis, Eigen::Vector3d::UnitZ(), {wall.length, wall.height},
-                     wall_contours(wall), plaster);
+                     wall_contours(wall, room), plaster);
     if (room.skirting) add_skirting(builder, wall, tag);
   }
 }
@@ -136,6 +198,16 @@ void add_lamps(SceneAssembly& builder, int r) {
 }
 
 }  // namespace
+
+double ceiling_height(const RoomPlan& room, const Eigen::Vector2d& at) {
+  if (!room.slope) return room.height;
+  const auto i = static_cast<std::size_t>(room.slope->wall);
+  const Eigen::Vector2d p0 = room.polygon[i],
+                        along = (room.polygon[(i + 1) % room.polygon.size()] - p0).normalized();
+  const double distance = Eigen::Vector2d(-along.y(), along.x()).dot(at - p0);
+  return std::min(room.height, room.slope->knee + (room.height - room.slope->knee) * std::max(0.0, distance) /
+                                                      room.slope->reach);
+}
 
 std::vector<std::string> floor_kinds() { return {"tiles", "wood", "carpet", "terrazzo", "concrete"}; }
 

@@ -53,6 +53,11 @@ void check_room(const RoomPlan& room, const std::string& key) {
   in_range(room.z_floor, -100, 100, key + ".z_floor");
   in_range(room.height, 1.8, 20, key + ".height");
   in_range(room.brightness, 0, 5, key + ".brightness");
+  if (room.slope) {
+    in_range(room.slope->wall, 0, static_cast<double>(room.polygon.size() - 1), key + ".slope.wall");
+    in_range(room.slope->knee, 0.2, room.height, key + ".slope.knee");
+    in_range(room.slope->reach, 0.1, 100, key + ".slope.reach");
+  }
   if (room.lamps) {
     for (std::size_t i = 0; i < room.lamps->size(); ++i) {
       check_point((*room.lamps)[i], at((key + ".lamps").c_str(), i));
@@ -70,6 +75,11 @@ void check_path(const PathPlan& path, const std::string& key) {
   in_range(path.shake, 0, 10, key + ".shake");
   in_range(path.smooth_s, 0, 5, key + ".smooth_s");
   in_range(path.clearance, 0.05, 1, key + ".clearance");
+  if (path.robot) {
+    in_range(path.robot->width, 0.05, 3, key + ".robot.width");
+    in_range(path.robot->ahead, 0.05, 3, key + ".robot.ahead");
+    in_range(path.robot->below, 0.02, 2, key + ".robot.below");
+  }
   require_input(!path.waypoints.empty(), key + ".waypoints: must not be empty");
   for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
     const WaypointPlan& w = path.waypoints[i];
@@ -102,6 +112,14 @@ void check_things(const Plan& plan) {
     if (!d.leaf) continue;
     in_range(d.leaf->angle_deg, 0, 180, key + ".leaf.angle_deg");
     one_of(d.leaf->hinge, {"left", "right"}, key + ".leaf.hinge");
+    in_range(d.leaf->set_back, 0, 0.5, key + ".leaf.set_back");
+    double before = 0;
+    for (std::size_t k = 0; k < d.leaf->turns.size(); ++k) {
+      const std::string turn = at((key + ".leaf.turns").c_str(), k);
+      in_range(d.leaf->turns[k].x(), before, 1e5, turn + "[0]");
+      in_range(d.leaf->turns[k].y(), 0, 180, turn + "[1]");
+      before = d.leaf->turns[k].x();
+    }
     require_input(d.leaf->room == d.rooms[0] || d.leaf->room == d.rooms[1],
                   key + ".leaf.room: must be one of the door's two rooms, not \"" + d.leaf->room + "\"");
   }
@@ -110,6 +128,7 @@ void check_things(const Plan& plan) {
     in_range(w.width, 0.3, 20, at("windows", i) + ".width");
     in_range(w.height, 0.3, 20, at("windows", i) + ".height");
     in_range(w.sill, 0, 20, at("windows", i) + ".sill");
+    one_of(w.view, {"picture", "parapet", "street"}, at("windows", i) + ".view");
   }
   for (std::size_t i = 0; i < plan.posters.size(); ++i) {
     const PosterPlan& p = plan.posters[i];
@@ -143,6 +162,37 @@ void check_things(const Plan& plan) {
   }
 }
 
+void check_partitions(const Plan& plan) {
+  for (std::size_t i = 0; i < plan.partitions.size(); ++i) {
+    const PartitionPlan& p = plan.partitions[i];
+    const std::string key = at("partitions", i);
+    one_of(p.kind, {"solid", "glass"}, key + ".kind");
+    check_point(p.from, key + ".from"), check_point(p.to, key + ".to");
+    require_input((p.to - p.from).norm() > 0.1, key + ".to: must differ from \"from\"");
+    in_range(p.height, 0.2, 20, key + ".height");
+    in_range(p.thickness, 0.01, 1, key + ".thickness");
+    in_range(p.mullions, 0.2, 100, key + ".mullions");
+  }
+}
+
+void check_movers(const Plan& plan) {
+  for (std::size_t i = 0; i < plan.movers.size(); ++i) {
+    const MoverPlan& m = plan.movers[i];
+    const std::string key = at("movers", i);
+    one_of(m.kind, {"person", "trolley"}, key + ".kind");
+    one_of(m.pose, {"walk", "stand", "sit"}, key + ".pose");
+    require_input(!m.way.empty(), key + ".way: must not be empty");
+    for (std::size_t k = 0; k < m.way.size(); ++k) {
+      const std::string point = at((key + ".way").c_str(), k);
+      check_point(m.way[k], point);
+      require_input(k == 0 || (m.way[k] - m.way[k - 1]).norm() > 0.05, point + ": lies at the point before");
+    }
+    in_range(m.speed, 0.05, 5, key + ".speed");
+    in_range(m.start_s, 0, 1e5, key + ".start_s");
+    in_range(m.yaw_deg, -3600, 3600, key + ".yaw_deg");
+  }
+}
+
 }  // namespace
 
 void check_plan(const Plan& plan) {
@@ -155,6 +205,8 @@ void check_plan(const Plan& plan) {
                   at("rooms", i) + ".id: \"" + plan.rooms[i].id + "\" is used twice");
   }
   check_things(plan);
+  check_partitions(plan);
+  check_movers(plan);
   check_path(plan.path, "path");
 }
 

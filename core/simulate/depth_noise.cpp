@@ -5,40 +5,11 @@
 
 #include "core/base/rng.h"
 #include "core/simulate/sensor_noise.h"
+#include "core/simulate/smooth_noise.h"
 
 namespace vsgraphs {
 namespace {
 
-// Noise that varies smoothly from pixel to pixel: independent values on a coarse grid, blended bilinearly.
-class SmoothNoise {
- public:
-  SmoothNoise(Rng& rng, int width, int height, int spacing, bool gaussian)
-      : spacing_(spacing),
-        columns_(width / spacing + 2),
-        nodes_(static_cast<std::size_t>(columns_) * (height / spacing + 2)),
-        row_(static_cast<std::size_t>(columns_)) {
-    for (float& n : nodes_) n = static_cast<float>(gaussian ? rng.normal() : rng.uniform());
-  }
-  void select_row(int v) {
-    const int j = v / spacing_;
-    const float f = static_cast<float>(v % spacing_) / static_cast<float>(spacing_);
-    const float* a = nodes_.data() + static_cast<std::ptrdiff_t>(j) * columns_;
-    for (int i = 0; i < columns_; ++i)
-      row_[static_cast<std::size_t>(i)] = (1 - f) * a[i] + f * a[i + columns_];
-  }
-  float at(int u) const {
-    const int i = u / spacing_;
-    const float f = static_cast<float>(u % spacing_) / static_cast<float>(spacing_);
-    return (1 - f) * row_[static_cast<std::size_t>(i)] + f * row_[static_cast<std::size_t>(i) + 1];
-  }
-
- private:
-  int spacing_, columns_;
-  std::vector<float> nodes_, row_;
-};
-
-// Blending 2 x 2 independent values averages their variance down to 4/9 over the cell.
-constexpr float blend_gain = 1.5f;
 constexpr int wobble_spacing_px = 6, blotch_spacing_px = 24;
 constexpr int edge_reach_px = 2;
 constexpr float edge_limit_px = 0.4f,
@@ -91,8 +62,8 @@ class Holes {
 
 }  // namespace
 
-float incidence_cosine(const Camera& camera, const PixelForm<double>& form, double inverse_depth, int u,
-                       int v) {
+float incidence_cosine(const Camera& camera, const PixelForm<double>& form, double inverse_depth, double u,
+                       double v) {
   // The form is n . ray / d with ray = (x, y, 1): its gradient is the normal, unscaled.
   const double nx = form.a * camera.fx, ny = form.b * camera.fy;
   const double nz = form.c + form.a * camera.cx + form.b * camera.cy;

@@ -91,6 +91,10 @@ void bed(Piece& p) {
   p.box({-0.7 * p.w, -p.d + 0.1, p.h}, {0.7 * p.w, -p.d + 0.45, p.h + 0.1}, {"rug", p.seed, p.colour});
 }
 
+void pillar(Piece& p) {
+  p.box({-p.w, -p.d, 0}, {p.w, p.d, p.h}, {"paint", p.seed, p.colour}, all_sides & ~BoxSide::bottom);
+}
+
 void leaf(Piece& p, Rng& rng, const Vector3d& root, double length) {
   const double turn = rng.uniform(0, 2 * std::numbers::pi), lean = rng.uniform(0.1, 1.15);
   const Vector3d t(std::cos(turn) * std::sin(lean), std::sin(turn) * std::sin(lean), std::cos(lean));
@@ -171,6 +175,7 @@ constexpr FurnitureKind table_of_kinds[] = {
     {"screen", SceneClass::screen, {34, 34, 36}, monitor},
     {"photo", SceneClass::picture, {60, 48, 40}, photo},
     {"books", SceneClass::misc, {120, 60, 60}, books},
+    {"pillar", SceneClass::pillar, {198, 200, 194}, pillar},
     {"rug", SceneClass::rug, {72, 112, 72}, rug},
 };
 

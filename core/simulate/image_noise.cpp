@@ -1,4 +1,4 @@
-// Brightness and noise of the colour image, and the noise options themselves.
+// Brightness and noise of the colour image.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,29 +31,6 @@ class NoiseTable {
 };
 
 }  // namespace
-
-NoiseOptions NoiseOptions::none() {
-  NoiseOptions off;
-  off.depth_quantisation = off.depth_holes = off.exposure = off.motion_blur = off.image_noise = false;
-  return off;
-}
-
-void NoiseOptions::validate() const {
-  const auto within = [](double value, double low, double high, const char* name) {
-    require_input(
-        std::isfinite(value) && value >= low && value <= high,
-        std::string("noise.") + name + ": must lie in " + std::to_string(low) + ".." + std::to_string(high));
-  };
-  within(baseline_m, 0.001, 2, "baseline_m");
-  within(disparity_step_px, 1e-3, 4, "disparity_step_px");
-  within(disparity_sigma_px, 0, 4, "disparity_sigma_px");
-  within(depth_min_m, 0, 10, "depth_min_m");
-  within(depth_max_m, 0.1, 13, "depth_max_m");
-  within(grazing_deg, 0, 90, "grazing_deg");
-  within(exposure_amplitude, 0, 0.9, "exposure_amplitude");
-  within(exposure_time_s, 0, 0.2, "exposure_time_s");
-  within(image_sigma, 0, 60, "image_sigma");
-}
 
 float exposure_gain(const NoiseOptions& noise, double time_s) {
   Rng rng(noise.seed, "exposure", 0);

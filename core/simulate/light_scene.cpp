@@ -93,6 +93,8 @@ void light_scene(Scene& scene) {
   for (Face& face : scene.faces) {
     if (face.emission > 0)
       face.lightmap.light = {face.emission};
+    else if (face.mover >= 0)
+      face.lightmap.light = {0.72f + 0.16f * static_cast<float>(face.normal().z())};
     else if (face.room < 0)
       face.lightmap.light = {0.7f};  // linings of doorways
     else

@@ -14,6 +14,13 @@
 
 namespace vsgraphs {
 
+// A ceiling that comes down towards a wall.
+struct SlopePlan {
+  int wall = 0;
+  double knee = 1.2;   // its height at that wall
+  double reach = 1.5;  // distance from the wall at which the room's full height is reached
+};
+
 struct RoomPlan {
   std::string id;
   std::string kind = "room";  // room | corridor | stairs
@@ -29,12 +36,17 @@ struct RoomPlan {
   double brightness = 1.0;  // of the room's lamps
   std::optional<std::vector<Eigen::Vector2d>>
       lamps;  // centres of ceiling lamps; absent: spread automatically
+  std::optional<SlopePlan> slope;
 };
 
 struct DoorLeafPlan {
   std::string room;            // the room it opens into
   double angle_deg = 95;       // 0 closed, 90 square to the wall
   std::string hinge = "left";  // left | right, seen from that room
+  double set_back = 0;         // of a leaf within its frame, behind the wall's face; 0: before the casing
+  bool pair = false;           // two leaves of half the width
+  std::vector<Eigen::Vector2d>
+      turns;  // (time in s, angle in degrees): the leaf swings there from that time on
 };
 
 struct DoorPlan {
@@ -54,6 +66,7 @@ struct WindowPlan {
   double sill = 0.9;  // lower edge above the floor
   bool radiator = false;
   bool curtain = false;
+  std::string view = "picture";  // picture: painted on the pane | parapet | street: built behind glass
   std::uint64_t seed = 0;
 };
 
@@ -65,7 +78,7 @@ struct PosterPlan {
   double z = 1.5;    // centre above the floor
   double width = 0.6;
   double height = 0.8;
-  std::string kind = "poster";  // poster | picture | board | clock | notice | socket | switch
+  std::string kind = "poster";  // poster | picture | board | clock | notice | socket | switch | mirror
   std::uint64_t seed = 0;       // equal kinds, sizes and seeds look equal
 };
 
@@ -88,6 +101,32 @@ struct BoxPlan {
   Eigen::Vector3d size{0.5, 0.5, 0.5};  // width (local x), depth (local y), height
   std::optional<Rgb> colour;
   std::uint64_t seed = 0;
+};
+
+// A thin wall that stands free in a room.
+struct PartitionPlan {
+  std::string room;
+  Eigen::Vector2d from{0, 0}, to{0, 0};
+  double height = 1.4, thickness = 0.06;
+  std::string kind = "solid";  // solid | glass
+  double mullions = 1.0;       // of glass: distance between its posts
+};
+
+// Somebody or something that moves while the camera looks on.
+struct MoverPlan {
+  std::string kind = "person";       // person | trolley
+  std::string room;                  // whose floor it is on
+  std::string pose = "walk";         // of a person: walk | stand | sit
+  std::vector<Eigen::Vector2d> way;  // walked to and fro; a place for who stands or sits
+  double speed = 1.0, start_s = 0, yaw_deg = 0;
+  std::uint64_t seed = 0;
+};
+
+// The robot that carries the camera, as far as the camera sees it.
+struct RobotPlan {
+  double width = 0.4;
+  double ahead = 0.3;  // how far its deck reaches in front of the camera
+  double below = 0.1;  // how far the deck lies below it
 };
 
 // A straight flight of steps inside a room of kind "stairs".
@@ -121,6 +160,7 @@ struct PathPlan {
   double clearance = 0.2;  // free space around the camera
   bool closed = false;     // ends with the first way-point's pose again
   std::vector<WaypointPlan> waypoints;
+  std::optional<RobotPlan> robot;
 };
 
 struct Plan {
@@ -135,6 +175,8 @@ struct Plan {
   std::vector<MarkerPlan> markers;
   std::vector<BoxPlan> boxes;
   std::vector<StairsPlan> stairs;
+  std::vector<PartitionPlan> partitions;
+  std::vector<MoverPlan> movers;
   PathPlan path;
 };
 

@@ -111,7 +111,8 @@ std::string obstacle(const Scene& scene, const Eigen::Vector3d& p) {
       continue;
     if (p.z() < ground_height(scene.plan, static_cast<int>(r), p.head<2>()) + 0.15)
       return "the ground of room \"" + room.id + "\"";
-    if (p.z() > room.z_floor + room.height - 0.1) return "the ceiling of room \"" + room.id + "\"";
+    if (p.z() > room.z_floor + ceiling_height(room, p.head<2>()) - 0.1)
+      return "the ceiling of room \"" + room.id + "\"";
     for (const int w : scene.rooms[r].walls) {
       const WallGeometry& wall = scene.walls[static_cast<std::size_t>(w)];
       if (distance_to_segment(p.head<2>(), wall.p0, wall.p1) < clearance && !in_doorway(wall, p))

@@ -1,101 +1,47 @@
 #include "core/simulate/renderer.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/check.h"
 #include "core/simulate/sensor_noise.h"
+#include "core/simulate/shading.h"
 
 namespace vsgraphs {
 namespace {
 
-constexpr int rays_per_pixel = 4;
-// Offsets within the pixel (a rotated grid) and fractions of a texture level: four rays together filter in both.
+// Offsets within the pixel (a rotated grid).
 constexpr double ray_offsets[rays_per_pixel][2] = {
     {-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}};
-constexpr float level_offsets[rays_per_pixel] = {0.0f, 0.5f, 0.25f, 0.75f};
-constexpr float level_bias = -0.9f;  // four rays resolve about one level more than one does
-constexpr int chunk_px = 8;          // level and light are worked out once per chunk of a row
+constexpr double band_s = 0.001;                        // of a rolling shutter: rows within it share a moment
+constexpr float pane_passes = 0.88f, pane_adds = 7.0f;  // light through a pane of glass, and off it
 
-// log2 good to a tenth, from the float's exponent and the top of its mantissa.
-float fast_log2(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return static_cast<float>(bits - 0x3f800000) * (1.0f / 8388608.0f);
+// A row's pixels first..end that see one face straight on: what the general case below works out, in loops without
+// branches.
+void look_at_run(const Camera& camera, const PixelForm<double>& form, int v, int first, int end,
+                 ExactDepth& out) {
+  std::uint16_t* depth = &out.depth.at(0, v);
+  for (int u = first; u < end; ++u) {
+    const double raw = camera.depth_scale / form.at(u, v) + 0.5;
+    depth[u] = static_cast<std::uint16_t>(raw < 65536 && raw >= 0 ? static_cast<std::int32_t>(raw) : 0);
+  }
+  if (out.incidence.empty()) return;
+  float* incidence = &out.incidence.at(0, v);
+  const double nx = form.a * camera.fx, ny = form.b * camera.fy;
+  const double nz = form.c + form.a * camera.cx + form.b * camera.cy;
+  const double n2 = nx * nx + ny * ny + nz * nz, y = (v - camera.cy) / camera.fy;
+  for (int u = first; u < end; ++u) {
+    const double x = (u - camera.cx) / camera.fx;
+    incidence[u] = static_cast<float>(std::abs(form.at(u, v)) / std::sqrt(n2 * (x * x + y * y + 1)));
+  }
 }
 
-float light_at(const Lightmap& map, float s, float t) {
-  const float x = std::clamp(s * map.nodes_per_s, 0.0f, static_cast<float>(map.width) - 1.001f);
-  const float y = std::clamp(t * map.nodes_per_t, 0.0f, static_cast<float>(map.height) - 1.001f);
-  const int i = static_cast<int>(x), j = static_cast<int>(y);
-  const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
-  const float* a = map.light.data() + static_cast<std::ptrdiff_t>(j) * map.width + i;
-  const float* b = a + map.width;
-  return (1 - fy) * ((1 - fx) * a[0] + fx * a[1]) + fy * ((1 - fx) * b[0] + fx * b[1]);
-}
-
-// Everything one face needs per pixel, in single precision.
-struct Shader {
-  PixelForm<float> s, t;
-  float s_shift, t_shift;
-  float s_scale, t_scale, s_offset, t_offset;  // metres to repeats
-  float iz_a, iz_b;
-  const Face* face;
-  const Texture* texture;
-
-  Shader(const Face& f, const FaceView& view, const MaterialStore::Entry& material)
-      : face(&f), texture(&material.texture) {
-    const auto narrow = [](const PixelForm<double>& p) {
-      return PixelForm<float>{static_cast<float>(p.a), static_cast<float>(p.b), static_cast<float>(p.c)};
-    };
-    s = narrow(view.s_over_z), t = narrow(view.t_over_z);
-    s_shift = static_cast<float>(view.s_shift), t_shift = static_cast<float>(view.t_shift);
-    s_scale = static_cast<float>(f.repeats_per_m.x()), t_scale = static_cast<float>(f.repeats_per_m.y());
-    s_offset = static_cast<float>(f.texture_offset.x()), t_offset = static_cast<float>(f.texture_offset.y());
-    iz_a = static_cast<float>(view.inverse_depth.a), iz_b = static_cast<float>(view.inverse_depth.b);
-  }
-
-  // Texture level where a pixel covers about one texel; the geometric mean of both directions, so that floors seen at
-  // a slant stay crisp along the way.
-  int level(float u, float v, float z, float dither) const {
-    const float su = s.at(u, v) * z, tu = t.at(u, v) * z;
-    const float w = s_scale * static_cast<float>(texture->width()),
-                h = t_scale * static_cast<float>(texture->height());
-    const float dx0 = z * (s.a - iz_a * su) * w, dx1 = z * (t.a - iz_a * tu) * h;
-    const float dy0 = z * (s.b - iz_b * su) * w, dy1 = z * (t.b - iz_b * tu) * h;
-    const float area2 = (dx0 * dx0 + dx1 * dx1) * (dy0 * dy0 + dy1 * dy1);
-    const float level = 0.25f * fast_log2(area2 + 1e-12f) + level_bias + dither;
-    return std::clamp(static_cast<int>(std::floor(level)), 0, texture->level_count() - 1);
-  }
-};
-
-void shade_run(const Shader& shader, const float* inverse_depth, int begin, int end, int v, int sample,
-               float* colour) {
-  const float y = static_cast<float>(v);
-  const auto place = [&](int u, float z) {
-    const float x = static_cast<float>(u);
-    return std::pair{shader.s.at(x, y) * z - shader.s_shift, shader.t.at(x, y) * z - shader.t_shift};
-  };
-  for (int u0 = begin; u0 < end; u0 += chunk_px) {
-    const int u1 = std::min(u0 + chunk_px, end);
-    const int last = u1 - 1;
-    const float z0 = 1 / inverse_depth[u0], z1 = 1 / inverse_depth[last];
-    const int level = shader.level(static_cast<float>(u0), y, z0, level_offsets[sample]);
-    const auto [s0, t0] = place(u0, z0);
-    const auto [s1, t1] = place(last, z1);
-    float light = light_at(shader.face->lightmap, s0, t0);
-    const float step =
-        last > u0 ? (light_at(shader.face->lightmap, s1, t1) - light) / static_cast<float>(last - u0) : 0.0f;
-    for (int u = u0; u < u1; ++u) {
-      const auto [s, t] = place(u, 1 / inverse_depth[u]);
-      const Colour c = shader.texture->sample(s * shader.s_scale + shader.s_offset,
-                                              t * shader.t_scale + shader.t_offset, level);
-      colour[3 * u] += light * c.r;
-      colour[3 * u + 1] += light * c.g;
-      colour[3 * u + 2] += light * c.b;
-      light += step;
-    }
-  }
+std::vector<LensMap> lens_map(const Camera& camera, const Lens& lens) {
+  if (!lens.bends()) return {};
+  std::vector<Eigen::Vector2d> offsets{{0, 0}};
+  for (const auto& o : ray_offsets) offsets.emplace_back(o[0], o[1]);
+  return {LensMap(camera, lens, offsets)};
 }
 
 }  // namespace
@@ -104,69 +50,186 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const NoiseOptions&
     : scene_(scene),
       camera_(camera),
       noise_(noise),
-      buffer_(camera.width, camera.height),
-      colour_(3 * static_cast<std::size_t>(camera.width) * camera.height) {
+      lens_(lens_map(camera, noise.lens)),
+      buffer_(pinhole().width, pinhole().height),
+      colour_(3 * static_cast<std::size_t>(camera.width) * camera.height),
+      ray_(3 * static_cast<std::size_t>(camera.width)) {
   camera.validate();
   noise.validate();
-  require_input(!camera.distorted(),
-                "camera: the simulator renders a pinhole without distortion; leave k1..k3 out");
+  require_input(!camera.distorted(), "camera: give the lens as an effect of the camera, not as k1..k3");
+  if (noise.roll_deg != 0)
+    mount_ = Se3(so3_exp({0, 0, noise.roll_deg * std::numbers::pi / 180}), Eigen::Vector3d::Zero());
 }
 
 View Renderer::view_at(double time_s, double offset_u, double offset_v) const {
-  return {&camera_, scene_.path.world_from_camera(time_s).inverse(), offset_u, offset_v};
+  const Se3 world_from_camera =
+      noise_.roll_deg == 0 ? scene_.path.world_from_camera(time_s) : camera_at(time_s);
+  return {&pinhole(), world_from_camera.inverse(), offset_u, offset_v, time_s};
 }
 
-void Renderer::render_geometry(RenderedFrame& frame, Image<float>& incidence) {
-  const View view = view_at(frame.time_s, 0, 0);
+// Calls look(begin, end, seconds after the middle row) for the rows that are taken at one moment.
+template <typename Look>
+void Renderer::each_band(bool rolling, const Look& look) const {
+  const int height = camera_.height;
+  if (!rolling || noise_.rolling_shutter_s <= 0) return look(0, height, 0.0);
+  const int band_rows = std::max(1, static_cast<int>(band_s * height / noise_.rolling_shutter_s));
+  for (int begin = 0; begin < height; begin += band_rows) {
+    const int end = std::min(begin + band_rows, height);
+    const double middle = 0.5 * (begin + end - 1) / std::max(1, height - 1);
+    look(begin, end, noise_.rolling_shutter_s * (middle - 0.5));
+  }
+}
+
+// Draws what rows begin..end of the image look at.
+void Renderer::draw_rows(const Moment& moment, int begin, int end) {
+  View view = view_at(moment.time_s, moment.offset_u, moment.offset_v);
+  const std::array<int, 2> rows = lens_.empty() ? std::array{begin, end} : lens_.front().rows(begin, end);
+  view.row_begin = rows[0], view.row_end = rows[1];
   buffer_.draw(scene_, view, visible_rooms(scene_, view));
-  const bool need_incidence = noise_.depth_holes;
-  for (int v = 0; v < camera_.height; ++v) {
-    const std::int32_t* faces = buffer_.face_row(v);
-    for (int u = 0; u < camera_.width; ++u) {
-      if (faces[u] < 0) continue;
-      const auto i = static_cast<std::size_t>(faces[u]);
-      const Face& face = scene_.faces[i];
-      const PixelForm<double>& form = buffer_.views()[i].inverse_depth;
-      const double inverse_depth = form.at(u, v);
-      const double raw = camera_.depth_scale / inverse_depth + 0.5;
-      frame.depth.at(u, v) = raw < 65536 ? static_cast<std::uint16_t>(raw) : std::uint16_t{0};
-      frame.label.at(u, v) = static_cast<std::uint8_t>(face.label);
-      frame.instance.at(u, v) = face.instance;
-      if (need_incidence) incidence.at(u, v) = incidence_cosine(camera_, form, inverse_depth, u, v);
+}
+
+void Renderer::look_at_geometry(const Moment& moment, ExactDepth& out, Image<std::uint16_t>* instance) {
+  const int w = camera_.width, h = camera_.height;
+  out.depth = Image<std::uint16_t>(w, h);
+  out.label = Image<std::uint8_t>(w, h);
+  if (noise_.depth_holes) out.incidence = Image<float>(w, h);
+  if (!scene_.panes.empty()) out.pane = Image<std::uint16_t>(w, h), out.pane_incidence = Image<float>(w, h);
+  each_band(moment.rolling, [&](int begin, int end, double later) {
+    Moment now = moment;
+    now.time_s += later;
+    draw_rows(now, begin, end);
+    for (int v = begin; v < end; ++v) look_at_row(v, now, out, instance);
+  });
+}
+
+void Renderer::look_at_row(int v, const Moment&, ExactDepth& out, Image<std::uint16_t>* instance) {
+  const auto units = [&](double inverse_depth) {
+    const double raw = camera_.depth_scale / inverse_depth + 0.5;
+    return raw < 65536 && raw >= 0 ? static_cast<std::uint16_t>(raw) : std::uint16_t{0};
+  };
+  const std::int32_t* row = lens_.empty() && scene_.panes.empty() ? buffer_.face_row(v) : nullptr;
+  for (int u = 0; u < camera_.width; ++u) {
+    if (row != nullptr && row[u] >= 0 && row[u] < static_cast<std::int32_t>(scene_.faces.size())) {
+      const int first = u;
+      while (u + 1 < camera_.width && row[u + 1] == row[first]) ++u;
+      const auto i = static_cast<std::size_t>(row[first]);
+      look_at_run(camera_, buffer_.views()[i].inverse_depth, v, first, u + 1, out);
+      std::fill(&out.label.at(first, v), &out.label.at(u, v) + 1,
+                static_cast<std::uint8_t>(scene_.faces[i].label));
+      if (instance != nullptr)
+        std::fill(&instance->at(first, v), &instance->at(u, v) + 1, scene_.faces[i].instance);
+      continue;
+    }
+    const Eigen::Vector2d at =
+        lens_.empty() ? Eigen::Vector2d(u, v) : Eigen::Vector2d(lens_.front().at(0, u, v).cast<double>());
+    const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
+    const std::int32_t seen = buffer_.face_row(y)[x];
+    if (seen < 0) continue;
+    const auto i = static_cast<std::size_t>(seen);
+    const Face* face = &scene_.faces[i % scene_.faces.size()];
+    const PixelForm<double>& form = buffer_.views()[i].inverse_depth;
+    const double inverse_depth = form.at(at.x(), at.y());
+    out.depth.at(u, v) = units(inverse_depth);
+    if (noise_.depth_holes)
+      out.incidence.at(u, v) = incidence_cosine(pinhole(), form, inverse_depth, at.x(), at.y());
+    const std::int32_t* panes = buffer_.pane_row(y);
+    if (panes != nullptr && panes[x] >= 0) {
+      const auto p = static_cast<std::size_t>(panes[x]);
+      const PixelForm<double>& pane = buffer_.views()[p].inverse_depth;
+      face = &scene_.faces[p];
+      out.pane.at(u, v) = units(pane.at(at.x(), at.y()));
+      out.pane_incidence.at(u, v) =
+          incidence_cosine(pinhole(), pane, pane.at(at.x(), at.y()), at.x(), at.y());
+    } else if (i >= scene_.faces.size()) {
+      face = &scene_.faces[static_cast<std::size_t>(scene_.mirrors[i / scene_.faces.size() - 1])];
+    }
+    out.label.at(u, v) = static_cast<std::uint8_t>(face->label);
+    if (instance != nullptr) instance->at(u, v) = face->instance;
+  }
+}
+
+void Renderer::shade(int sample, int begin, int end) {
+  for (int v = begin; v < end; ++v) {
+    float* colour = colour_.data() + 3 * static_cast<std::ptrdiff_t>(v) * camera_.width;
+    if (scene_.panes.empty()) {
+      shade_row(v, sample, colour);
+      continue;
+    }
+    std::fill(ray_.begin(), ray_.end(), 0.0f);
+    shade_row(v, sample, ray_.data());
+    tint_row(v, sample, ray_.data());
+    for (std::size_t i = 0; i < ray_.size(); ++i) colour[i] += ray_[i];
+  }
+}
+
+void Renderer::shade_row(int v, int sample, float* colour) {
+  if (!lens_.empty()) return shade_bent_row(v, sample, colour);
+  const std::int32_t* faces = buffer_.face_row(v);
+  for (int u = 0; u < camera_.width;) {
+    const std::int32_t id = faces[u];
+    int end = u + 1;
+    while (end < camera_.width && faces[end] == id) ++end;
+    if (id >= 0) {
+      const auto i = static_cast<std::size_t>(id);
+      const Face& face = scene_.faces[i % scene_.faces.size()];
+      const Shader shader(face, buffer_.views()[i],
+                          scene_.materials[static_cast<std::size_t>(face.material)]);
+      shade_run(shader, buffer_.inverse_depth_row(v), u, end, v, sample, colour);
+    }
+    u = end;
+  }
+}
+
+void Renderer::shade_bent_row(int v, int sample, float* colour) {
+  const auto offset = static_cast<std::size_t>(sample) + 1;
+  const auto seen = [&](const Eigen::Vector2f& p) {
+    return buffer_.face_row(static_cast<int>(p.y() + 0.5f))[static_cast<int>(p.x() + 0.5f)];
+  };
+  for (int u = 0; u < camera_.width;) {
+    const std::int32_t id = seen(lens_.front().at(offset, u, v));
+    const auto i = static_cast<std::size_t>(std::max(0, id));
+    const Face& face = scene_.faces[i % scene_.faces.size()];
+    const Shader shader(face, buffer_.views()[i], scene_.materials[static_cast<std::size_t>(face.material)]);
+    for (; u < camera_.width; ++u) {
+      const Eigen::Vector2f p = lens_.front().at(offset, u, v);
+      if (seen(p) != id) break;
+      if (id >= 0) shade_point(shader, p.x(), p.y(), sample, colour + 3 * u);
     }
   }
 }
 
-void Renderer::shade(int sample) {
-  for (int v = 0; v < camera_.height; ++v) {
-    const std::int32_t* faces = buffer_.face_row(v);
-    float* colour = colour_.data() + 3 * static_cast<std::ptrdiff_t>(v) * camera_.width;
-    for (int u = 0; u < camera_.width;) {
-      const std::int32_t id = faces[u];
-      int end = u + 1;
-      while (end < camera_.width && faces[end] == id) ++end;
-      if (id >= 0) {
-        const Face& face = scene_.faces[static_cast<std::size_t>(id)];
-        const Shader shader(face, buffer_.views()[static_cast<std::size_t>(id)],
-                            scene_.materials[static_cast<std::size_t>(face.material)]);
-        shade_run(shader, buffer_.inverse_depth_row(v), u, end, v, sample, colour);
-      }
-      u = end;
+void Renderer::tint_row(int v, int sample, float* colour) const {
+  for (int u = 0; u < camera_.width; ++u) {
+    int x = u, y = v;
+    if (!lens_.empty()) {
+      const Eigen::Vector2f p = lens_.front().at(static_cast<std::size_t>(sample) + 1, u, v);
+      x = static_cast<int>(p.x() + 0.5f), y = static_cast<int>(p.y() + 0.5f);
     }
+    if (buffer_.pane_row(y)[x] < 0) continue;
+    for (int k = 0; k < 3; ++k) colour[3 * u + k] = pane_passes * colour[3 * u + k] + pane_adds;
   }
 }
 
 void Renderer::render_colour(RenderedFrame& frame, int index) {
   std::fill(colour_.begin(), colour_.end(), 0.0f);
-  const double exposure = noise_.motion_blur ? noise_.exposure_time_s : 0.0;
-  for (int k = 0; k < rays_per_pixel; ++k) {
-    const double time = frame.time_s + exposure * ((k + 0.5) / rays_per_pixel - 0.5);
-    const View view = view_at(time, ray_offsets[k][0], ray_offsets[k][1]);
-    buffer_.draw(scene_, view, visible_rooms(scene_, view));
-    shade(k);
-  }
-  const float gain = noise_.exposure ? exposure_gain(noise_, frame.time_s) : 1.0f;
-  develop(noise_, index, gain / rays_per_pixel, colour_, frame.rgb);
+  const Exposure exposure = exposure_at(frame.time_s);
+  each_band(true, [&](int begin, int end, double later) {
+    for (int k = 0; k < rays_per_pixel; ++k) {
+      const double time = frame.time_s + exposure.time_s * ((k + 0.5) / rays_per_pixel - 0.5) + later;
+      const bool bent = !lens_.empty();  // then rays are picked from one image
+      if (!bent || k == 0 || exposure.time_s > 0)
+        draw_rows({time, bent ? 0 : ray_offsets[k][0], bent ? 0 : ray_offsets[k][1]}, begin, end);
+      shade(k, begin, end);
+    }
+  });
+  NoiseOptions noise = noise_;
+  noise.image_sigma = exposure.sigma;
+  develop(noise, index, exposure.gain / rays_per_pixel, colour_, frame.rgb);
+}
+
+Se3 Renderer::pose(int index) const {
+  const double time_s = index / scene_.plan.fps;
+  return noise_.roll_deg == 0 ? scene_.path.world_from_camera(time_s) : camera_at(time_s);
 }
 
 RenderedFrame Renderer::render(int index) {
@@ -174,16 +237,20 @@ RenderedFrame Renderer::render(int index) {
                 "frame " + std::to_string(index) + " lies outside 0.." + std::to_string(frame_count() - 1));
   RenderedFrame frame;
   frame.time_s = index / scene_.plan.fps;
-  frame.world_from_camera = scene_.path.world_from_camera(frame.time_s);
+  frame.world_from_camera = pose(index);
   frame.rgb = Image<Rgb>(camera_.width, camera_.height);
-  frame.depth = Image<std::uint16_t>(camera_.width, camera_.height);
-  frame.label = Image<std::uint8_t>(camera_.width, camera_.height);
   frame.instance = Image<std::uint16_t>(camera_.width, camera_.height);
-  Image<float> incidence(noise_.depth_holes ? camera_.width : 0, noise_.depth_holes ? camera_.height : 0);
-  render_geometry(frame, incidence);
-  if (noise_.depth_holes || noise_.depth_quantisation)
-    frame.depth = sense_depth(noise_, camera_, index, frame.depth, frame.label, incidence);
   render_colour(frame, index);
+  ExactDepth seen;
+  look_at_geometry({frame.time_s, 0, 0, true}, seen, &frame.instance);
+  frame.label = seen.label;
+  if (noise_.depth_apart())
+    look_at_geometry(
+        {frame.time_s + noise_.depth_delay_s, noise_.misregistration_u_px, noise_.misregistration_v_px}, seen,
+        nullptr);
+  seen.colour = &frame.rgb;
+  frame.depth = noise_.depth_holes || noise_.depth_quantisation ? sense(noise_, camera_, index, seen)
+                                                                : std::move(seen.depth);
   return frame;
 }
 

@@ -9,36 +9,11 @@
 #include "core/base/image.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/se3.h"
+#include "core/simulate/noise_options.h"
 #include "core/simulate/scene.h"
 #include "core/simulate/visibility.h"
 
 namespace vsgraphs {
-
-// Each effect can be switched off by itself; `none()` switches all off ("clean").
-struct NoiseOptions {
-  std::uint64_t seed = 0;  // another seed, another draw of the same noise
-
-  bool depth_quantisation = true;  // depth from disparity in steps, with noise on the disparity
-  double baseline_m = 0.075;       // of projector and camera
-  double disparity_step_px = 0.125;
-  double disparity_sigma_px = 0.043;  // correlated over a few pixels, as block matching leaves it
-
-  bool depth_holes = true;  // no reading at depth edges, grazing angles, far off, on glass and out of range
-  double depth_min_m = 0.35, depth_max_m = 6.0;
-  double grazing_deg = 78;  // angle from the normal where readings begin to fail
-
-  bool exposure = true;  // slow changes of brightness
-  double exposure_amplitude = 0.07;
-
-  bool motion_blur = true;
-  double exposure_time_s = 0.010;
-
-  bool image_noise = true;
-  double image_sigma = 2.4;  // grey levels, mostly alike in all channels
-
-  static NoiseOptions none();
-  void validate() const;  // InputError naming the option
-};
 
 struct RenderedFrame {
   double time_s = 0;      // since the start of the walk
@@ -49,26 +24,52 @@ struct RenderedFrame {
   Image<std::uint16_t> instance;  // index into Scene::instances
 };
 
+struct ExactDepth;
+
 class Renderer {
  public:
-  // Keeps a reference to the scene. The camera must be free of distortion (InputError).
+  // Keeps a reference to the scene. Lenses are `noise.lens`'s: the camera must be free of distortion (InputError).
   Renderer(const Scene& scene, const Camera& camera, const NoiseOptions& noise);
 
   int frame_count() const { return scene_.frame_count(); }
   // Frame `index` of the walk at the plan's rate, 0..frame_count() - 1. Same arguments, same bytes.
   RenderedFrame render(int index);
+  Se3 pose(int index) const;  // of that frame's camera in the world
 
  private:
+  struct Exposure {
+    double time_s = 0;  // how long light is gathered
+    float gain = 1;
+    double sigma = 0;  // of the image's noise, grey levels
+  };
+  struct Moment {  // when and how rows are looked at
+    double time_s = 0, offset_u = 0, offset_v = 0;
+    bool rolling = false;
+  };
+  const Camera& pinhole() const { return lens_.empty() ? camera_ : lens_.front().pinhole(); }
+  Se3 camera_at(double time_s) const { return scene_.path.world_from_camera(time_s) * mount_; }
   View view_at(double time_s, double offset_u, double offset_v) const;
-  void render_geometry(RenderedFrame& frame, Image<float>& incidence);
+  void draw_rows(const Moment& moment, int begin, int end);
+  template <typename Look>
+  void each_band(bool rolling, const Look& look) const;
+  void look_at_geometry(const Moment& moment, ExactDepth& out, Image<std::uint16_t>* instance);
+  void look_at_row(int v, const Moment& moment, ExactDepth& out, Image<std::uint16_t>* instance);
+  Exposure exposure_at(double time_s);
+  double brightness_at(double time_s);
   void render_colour(RenderedFrame& frame, int index);
-  void shade(int sample);
+  void shade(int sample, int begin, int end);
+  void shade_row(int v, int sample, float* colour);
+  void shade_bent_row(int v, int sample, float* colour);
+  void tint_row(int v, int sample, float* colour) const;
 
   const Scene& scene_;
   Camera camera_;
   NoiseOptions noise_;
+  Se3 mount_;
+  std::vector<LensMap> lens_;  // one, or none
   VisibilityBuffer buffer_;
   std::vector<float> colour_;  // sum over rays, three floats per pixel
+  std::vector<float> ray_;     // of one row, where glass has to be looked through
 };
 
 }  // namespace vsgraphs

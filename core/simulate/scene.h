@@ -12,6 +12,7 @@
 #include "core/geometry/se3.h"
 #include "core/simulate/camera_path.h"
 #include "core/simulate/materials.h"
+#include "core/simulate/motion.h"
 #include "core/simulate/plan.h"
 
 namespace vsgraphs {
@@ -37,11 +38,22 @@ enum class SceneClass : std::uint8_t {
   misc,
   screen,
   radiator,
-  stairs
+  stairs,
+  mirror,
+  glass,
+  person,
+  pillar,
+  robot
 };
-inline constexpr std::array<std::string_view, 20> scene_class_names{
-    "void",    "wall",    "floor",   "ceiling", "door", "window", "table", "chair",  "sofa",     "bed",
-    "cabinet", "picture", "curtain", "plant",   "lamp", "rug",    "misc",  "screen", "radiator", "stairs"};
+inline constexpr std::array<std::string_view, 25> scene_class_names{
+    "void",     "wall",    "floor",   "ceiling", "door",   "window", "table", "chair", "sofa",
+    "bed",      "cabinet", "picture", "curtain", "plant",  "lamp",   "rug",   "misc",  "screen",
+    "radiator", "stairs",  "mirror",  "glass",   "person", "pillar", "robot"};
+// Those every truth file names, whether they occur or not.
+inline constexpr std::size_t first_rare_class = 20;
+
+// What light does at a surface.
+enum class Optics : std::uint8_t { matt, mirror, glass };
 
 // Light falling on a face, on a grid over its bounding rectangle; blended bilinearly. 1 = the nominal brightness.
 struct Lightmap {
@@ -63,6 +75,8 @@ struct Face {
   SceneClass label = SceneClass::none;
   std::uint16_t instance = 0;
   int room = -1;  // hidden when this room cannot be seen; -1: never hidden
+  Optics optics = Optics::matt;
+  int mover = -1;  // >= 0: the face is given in that mover's frame and goes with it
   Lightmap lightmap;
 
   Eigen::Vector3d normal() const { return s_axis.cross(t_axis); }
@@ -101,12 +115,25 @@ struct DoorGeometry {
   Eigen::Vector2d normal;  // of the first room's wall, into the first room
   double thickness = 0;    // of the wall between
   double z = 0, width = 0, height = 0;
-  std::uint16_t instance = 0, leaf_instance = 0;
+  std::uint16_t instance = 0, leaf_instance = 0, second_leaf_instance = 0;
 };
 
 struct WindowGeometry {
   int room = 0;
   Eigen::Vector3d center;
+  double width = 0, height = 0;
+  std::uint16_t instance = 0;
+};
+
+struct PartitionGeometry {
+  int room = 0;
+  Eigen::Vector3d from, to;  // on the floor
+  std::uint16_t instance = 0;
+};
+
+struct MirrorGeometry {
+  int room = 0;
+  Eigen::Vector3d center, normal;
   double width = 0, height = 0;
   std::uint16_t instance = 0;
 };
@@ -133,6 +160,9 @@ struct Light {
 struct Scene {
   Plan plan;
   std::vector<Face> faces;
+  std::vector<int> mirrors, panes;  // faces with these optics
+  std::vector<Mover> movers;
+  std::vector<Walk> walks;
   std::vector<MaterialStore::Entry> materials;
   std::vector<Instance> instances;
   std::vector<RoomGeometry> rooms;  // in the plan's order, as are doors, windows and markers
@@ -140,11 +170,16 @@ struct Scene {
   std::vector<DoorGeometry> doors;
   std::vector<WindowGeometry> windows;
   std::vector<MarkerGeometry> markers;
+  std::vector<PartitionGeometry> partitions;
+  std::vector<MirrorGeometry> wall_mirrors;
+  std::vector<std::uint16_t> moving;  // instances of the plan's movers, in its order
   std::vector<Solid> solids;
   std::vector<Light> lights;
   CameraPath path;
 
   int frame_count() const { return path.frame_count(plan.fps); }
+  // Takes a mover's own coordinates to the world at a time; the identity for mover -1.
+  Se3 world_from_mover(int mover, double time_s) const;
 };
 
 // Throws InputError naming the plan's field when the plan cannot be built or walked. Deterministic. Takes well under a

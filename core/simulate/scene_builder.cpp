@@ -22,8 +22,18 @@ Tag SceneAssembly::add_instance(SceneClass label, int room, const std::string& k
   return {label, id, room};
 }
 
+void SceneAssembly::set_mover(std::size_t begin, int mover) {
+  for (std::size_t i = begin; i < scene_.faces.size(); ++i)
+    scene_.faces[i].mover = mover, scene_.faces[i].room = -1;
+}
+
 Scene SceneAssembly::take() {
   scene_.materials = materials_.entries();
+  for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
+    if (scene_.faces[i].optics == Optics::mirror) scene_.mirrors.push_back(static_cast<int>(i));
+    if (scene_.faces[i].optics == Optics::glass) scene_.panes.push_back(static_cast<int>(i));
+  }
+  require_input(scene_.mirrors.size() <= 200, "posters: at most 200 mirrors");
   return std::move(scene_);
 }
 
@@ -106,7 +116,9 @@ Scene build_scene(const Plan& plan) {
   build_openings(builder);
   build_furniture(builder);
   build_posters(builder);
-  build_markers(builder);  // last: plans without any stay as they were
+  build_markers(builder);  // these last: plans without any stay as they were
+  build_partitions(builder);
+  build_movers(builder);
   Scene scene = builder.take();
   light_scene(scene);
   scene.path = plan_path(scene);

@@ -43,6 +43,9 @@ class SceneAssembly {
   const Scene& scene() const { return scene_; }
   const Plan& plan() const { return scene_.plan; }
 
+  // Takes faces added since `begin` along with a mover; they are given in its frame.
+  void set_mover(std::size_t begin, int mover);
+
   Tag add_instance(SceneClass label, int room, const std::string& kind = "", int side = -1, int door = -1);
 
   // A face from its lower left corner; contours in (s, t) with s, t >= 0. Coverings start at an offset of their own (so
@@ -84,6 +87,18 @@ void build_openings(SceneAssembly& builder);   // doors and windows
 void build_furniture(SceneAssembly& builder);  // boxes and stairs
 void build_posters(SceneAssembly& builder);
 void build_markers(SceneAssembly& builder);
+void build_partitions(SceneAssembly& builder);
+void build_movers(SceneAssembly& builder);  // people, trolleys, the robot
+// Scenery and glass of a window instead of a painted pane. `outline`: of the hole, along the wall and above the floor.
+void add_window_view(SceneAssembly& builder, const WindowPlan& plan, const Tag& pane, const Stand& stand,
+                     const Opening& outline, double pane_depth);
+void add_turning_leaf(SceneAssembly& builder, const DoorLeafPlan& plan, DoorGeometry& door, int index);
+// A pane of glass, seen from both sides; `corner` is its lower left one from its front.
+void add_pane(SceneAssembly& builder, const Tag& tag, const Eigen::Vector3d& corner,
+              const Eigen::Vector3d& s_axis, const Eigen::Vector2d& size);
+
+// Height of a room's ceiling over a place, above the room's floor.
+double ceiling_height(const RoomPlan& room, const Eigen::Vector2d& at);
 void light_scene(Scene& scene);
 CameraPath plan_path(const Scene& scene);  // way-points to a checked path
 

@@ -51,4 +51,39 @@ Texture::Texture(const Image<Rgb>& base) {
   }
 }
 
+void Texture::sample_batch(const float* s, const float* t, int level, Batch& out) const {
+  const Level& l = levels_[static_cast<std::size_t>(level)];
+  const float w = static_cast<float>(l.width * 256), h = static_cast<float>(l.height * 256);
+  std::int32_t x[batch], y[batch];
+  for (int i = 0; i < batch; ++i) {
+    const float u = s[i] - static_cast<float>(static_cast<int>(s[i]) - (s[i] < 0));
+    const float v = t[i] - static_cast<float>(static_cast<int>(t[i]) - (t[i] < 0));
+    x[i] = static_cast<std::int32_t>(u * w) - 128;
+    y[i] = static_cast<std::int32_t>((1.0f - v) * h) - 128;
+  }
+  std::uint32_t corner[4][batch];
+  const std::uint32_t* texels = l.texels.data();
+  const int right = l.width - 1, last = l.height - 1;
+  for (int i = 0; i < batch; ++i) {
+    const int x0 = (x[i] >> 8) & right, x1 = (x0 + 1) & right;
+    const int y0 = ((y[i] >> 8) & last) << l.log2_width, y1 = (((y[i] >> 8) + 1) & last) << l.log2_width;
+    corner[0][i] = texels[y0 + x0], corner[1][i] = texels[y0 + x1];
+    corner[2][i] = texels[y1 + x0], corner[3][i] = texels[y1 + x1];
+  }
+  constexpr std::uint32_t rb = 0x00ff00ff, g = 0x0000ff00;
+  for (int i = 0; i < batch; ++i) {
+    const auto fx = static_cast<std::uint32_t>(x[i] & 255), fy = static_cast<std::uint32_t>(y[i] & 255);
+    const auto mix = [](std::uint32_t a, std::uint32_t b, std::uint32_t f) { return a * (256 - f) + b * f; };
+    const std::uint32_t rb0 = (mix(corner[0][i] & rb, corner[1][i] & rb, fx) >> 8) & rb;
+    const std::uint32_t rb1 = (mix(corner[2][i] & rb, corner[3][i] & rb, fx) >> 8) & rb;
+    const std::uint32_t g0 = mix((corner[0][i] & g) >> 8, (corner[1][i] & g) >> 8, fx);
+    const std::uint32_t g1 = mix((corner[2][i] & g) >> 8, (corner[3][i] & g) >> 8, fx);
+    const std::uint32_t rb2 = mix(rb0, rb1, fy);
+    // Below 2^31: as signed numbers they are converted by one instruction.
+    out.r[i] = static_cast<float>(static_cast<std::int32_t>(rb2 & 0xffff)) * (1.0f / 256);
+    out.g[i] = static_cast<float>(static_cast<std::int32_t>(mix(g0, g1, fy))) * (1.0f / 65536);
+    out.b[i] = static_cast<float>(static_cast<std::int32_t>(rb2 >> 16)) * (1.0f / 256);
+  }
+}
+
 }  // namespace vsgraphs

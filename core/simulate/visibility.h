@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/geometry/camera.h"
@@ -17,6 +18,8 @@ struct View {
   const Camera* camera = nullptr;
   Se3 camera_from_world;
   double offset_u = 0, offset_v = 0;
+  double time_s = 0;                                             // where moving things are
+  int row_begin = 0, row_end = std::numeric_limits<int>::max();  // only these rows are wanted
 };
 
 // Linear function of the pixel: a u + b v + c.
@@ -33,38 +36,68 @@ struct FaceView {
   double s_shift = 0, t_shift = 0;
 };
 
-FaceView face_view(const Face& face, const View& view);
+// Where a face is at one moment, in the world; what a mirror shows lies behind it, the wrong way round.
+struct Placement {
+  Eigen::Vector3d origin, s_axis, t_axis, normal;
+  static Placement of(const Face& face) { return {face.origin, face.s_axis, face.t_axis, face.normal()}; }
+  Placement moved(const Se3& world_from_mover) const;
+  Placement reflected(const Placement& mirror) const;
+};
+
+FaceView face_view(const Placement& place, const View& view);
 
 class VisibilityBuffer {
  public:
   VisibilityBuffer(int width, int height);
 
-  // Draws the faces of the rooms in `rooms` (indexed by room) and those of no room. About 2 ms at 640x480.
+  // Draws the faces of the rooms in `rooms` (indexed by room) and those of no room, in the view's rows. About 2 ms at
+  // 640x480; each mirror in sight costs as much again.
   void draw(const Scene& scene, const View& view, const std::vector<bool>& rooms);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  // Index of the face seen, -1 for none; valid after draw().
+  // What is seen, -1 for nothing: a face i, or face i in mirror k as i + (k + 1) * faces. Valid after draw().
   const std::int32_t* face_row(int v) const {
     return faces_.data() + static_cast<std::ptrdiff_t>(v) * width_;
   }
   const float* inverse_depth_row(int v) const {
     return inverse_depths_.data() + static_cast<std::ptrdiff_t>(v) * width_;
   }
-  // Views of the faces drawn, indexed by face; others hold old values.
+  // The pane of glass before what is seen, as a face; -1 for none. nullptr in scenes without glass.
+  const std::int32_t* pane_row(int v) const {
+    return panes_.empty() ? nullptr : panes_.data() + static_cast<std::ptrdiff_t>(v) * width_;
+  }
+  // Views of what was drawn, indexed as in face_row(); others hold old values.
   const std::vector<FaceView>& views() const { return views_; }
 
  private:
   struct Edge {
     double v_min, v_max, u_at_v_min, slope;
   };
-  bool project(const Face& face, const View& view);
-  void add_contour(const Polygon2& contour, const Face& face, const View& view);
+  struct Rows {
+    int begin, end;
+  };
+  void clear(const Scene& scene);
+  Placement placed(const Face& face) const;
+  bool facing(const Face& face, const Placement& place) const;
+  void draw_mirrors(const Scene& scene, const View& view);
+  void draw_behind(const Scene& scene, const View& view, std::size_t k);
+  void draw_panes(const Scene& scene, const View& view, const std::vector<bool>& rooms);
+  bool project(const Face& face, const Placement& place, const View& view);
+  void add_contour(const Polygon2& contour, const Placement& place, const View& view);
+  // Calls paint(v, first, last, inverse depth at u = 0, its step) for each run of pixels of the face at hand.
+  template <typename Paint>
+  void each_run(const FaceView& face_view, const Paint& paint);
   void fill(std::int32_t index, const FaceView& face_view);
 
   int width_, height_;
+  Rows rows_{};  // of the view at hand
+  Eigen::Vector3d eye_, axis_;
+  std::vector<Se3> movers_;  // in the world, at the view's time
   std::vector<float> inverse_depths_;
   std::vector<std::int32_t> faces_;
+  std::vector<std::uint8_t> in_mirror_;  // 0, or the mirror's number + 1
+  std::vector<std::int32_t> panes_;
   std::vector<FaceView> views_;
   std::vector<Edge> edges_;               // of the face at hand
   std::vector<Eigen::Vector3d> clipped_;  // contour at hand, in the camera

@@ -9,7 +9,7 @@ from typing import Any
 
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
-from vsgraphs.plans import building, load_plan, plan_path, plan_text
+from vsgraphs.plans import building, drawn, load_plan, plan_path, plan_text
 from vsgraphs.reading import read_text
 
 
@@ -23,14 +23,22 @@ class PlanChoice:
     furnishings: int | None = None
     storeys: int | None = None
     seed: int = 0
+    drawn: str | None = None
+    robot: bool = False
 
     def plan(self) -> str | Mapping[str, Any]:
         """A name or file, or the building's plan. Raises InputError."""
         given = {"rooms": self.rooms, "furnishings": self.furnishings, "storeys": self.storeys}
         options: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
+        if self.robot and self.drawn is None:
+            raise InputError("--robot goes with --drawn; a plan says it with path.robot")
+        if self.drawn is not None:
+            return self._drawn(options)
         if self.building is None:
             if self.name is None:
-                raise InputError("what to simulate? give a PLAN (a name or a file), or --building KIND")
+                raise InputError(
+                    "what to simulate? give a PLAN (a name or a file), or --building KIND, or --drawn KIND"
+                )
             if options:
                 raise InputError(f"--{next(iter(options))} goes with --building, not with a PLAN")
             return self.name
@@ -39,6 +47,14 @@ class PlanChoice:
         if self.storeys is not None and self.building != "storeys":
             raise InputError(f"--storeys goes with --building storeys, not with {self.building}")
         return building(self.building, seed=self.seed, **options)
+
+    def _drawn(self, options: dict[str, Any]) -> Mapping[str, Any]:
+        for other, value in (("the plan", self.name), ("--building", self.building)):
+            if value is not None:
+                raise InputError(f"give either {other} {value} or --drawn {self.drawn}, not both")
+        if options:
+            raise InputError(f"--{next(iter(options))} goes with --building, not with --drawn")
+        return drawn(self.drawn or "", self.seed, carrier="robot" if self.robot else "hand")
 
 
 def write_plan(choice: PlanChoice, file: Path, *, overwrite: bool, with_out: bool) -> None:

@@ -6,6 +6,7 @@ import shutil
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,18 @@ from vsgraphs.export.atomic import write_atomically
 from vsgraphs.export.lock import Locks
 from vsgraphs.plans import plan_text
 from vsgraphs.simulate import Output, simulate
+from vsgraphs.simulate.camera import parse_effects
 from vsgraphs.simulate.folder import part_of
+
+
+@dataclass(frozen=True)
+class Looks:
+    """The camera, as the command's options name it. seed: of the noise; effects: KEY=VALUE."""
+
+    seed: int
+    noise: str
+    sensor: str | None
+    effects: list[str]
 
 
 def out_folder(out: Path | None) -> Path:
@@ -32,8 +44,7 @@ def make_sequence(
     plan: str | Mapping[str, Any],
     out: Path,
     *,
-    seed: int,
-    noise: str,
+    looks: Looks,
     frames: int | None,
     output: Output,
 ) -> int:
@@ -51,8 +62,10 @@ def make_sequence(
         done = simulate(
             plan,
             out,
-            seed=seed,
-            noise=noise,
+            seed=looks.seed,
+            noise=looks.noise,
+            sensor=looks.sensor,
+            effects=parse_effects(looks.effects),
             frames=frames,
             progress=bar.show,
             should_stop=interrupt.requested,

@@ -5,7 +5,20 @@ for any.
 """
 
 from vsgraphs.plans.buildings import BUILDING_KINDS, building
+from vsgraphs.plans.buildings.draw import Draw
+from vsgraphs.plans.drawn import DRAWN_KINDS, drawn
 from vsgraphs.plans.load import LoadedPlan, load_plan, plan_names, plan_path
 from vsgraphs.plans.write import plan_text
 
-__all__ = ["BUILDING_KINDS", "LoadedPlan", "building", "load_plan", "plan_names", "plan_path", "plan_text"]
+__all__ = [
+    "BUILDING_KINDS",
+    "DRAWN_KINDS",
+    "Draw",
+    "LoadedPlan",
+    "building",
+    "drawn",
+    "load_plan",
+    "plan_names",
+    "plan_path",
+    "plan_text",
+]

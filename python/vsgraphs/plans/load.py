@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,10 @@ class LoadedPlan:
     plan: Any  # vsgraphs._core.Plan
     source: str
     camera: dict[str, float]  # width, height, fx, fy, cx, cy as far as the plan gives them
+    sensor: str | None = None  # as `simulate` names them
+    effects: Mapping[str, object] = field(
+        default_factory=dict
+    )  # of the camera, by name; checked by `simulate`
 
 
 def plan_names() -> list[str]:
@@ -64,9 +68,11 @@ def _convert(values: object, source: str, name: str | None) -> LoadedPlan:
     reader = Reader(source)
     rotation = reader.number(values.get("rotate_deg", 0), "rotate_deg")
     camera = reader.camera(values.get("camera", {}))
+    sensor = reader.text(values["sensor"], "sensor") if "sensor" in values else None
+    effects = reader.effects(values.get("effects", {}))
     plan = reader.table(PLAN, {k: v for k, v in values.items() if k not in EXTRA_KEYS}, "", EXTRA_KEYS)
     if not plan.name:
         plan.name = name or "plan"
     if rotation:
         rotate(plan, math.radians(rotation))
-    return LoadedPlan(plan, source, camera)
+    return LoadedPlan(plan, source, camera, sensor, effects)

@@ -121,6 +121,16 @@ class Reader:
         except ValueError:
             raise self._fail(key, expected) from None
 
+    def text(self, value: object, key: str) -> str:
+        """One line of text."""
+        return self._text(value, key)
+
+    def effects(self, value: object) -> dict[str, object]:
+        """Effects of the camera by name; their names and ranges are the simulator's to check."""
+        if not isinstance(value, dict):
+            raise self._fail("effects", f"expected an object {{...}}, not {shown(value)}")
+        return {name: item for name, item in value.items() if name != COMMENT}
+
     def camera(self, value: object) -> dict[str, float]:
         """The camera's size and focal lengths; empty if the plan leaves them to us."""
         if not isinstance(value, dict):

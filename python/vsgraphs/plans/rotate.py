@@ -17,6 +17,8 @@ def rotate(plan: Any, angle_rad: float) -> None:
     _each(plan, "doors", turn.door)
     _each(plan, "boxes", turn.box)
     _each(plan, "stairs", turn.stairs)
+    _each(plan, "partitions", turn.stairs)
+    _each(plan, "movers", turn.mover)
     path = plan.path
     _each(path, "waypoints", turn.waypoint)
     plan.path = path
@@ -48,6 +50,10 @@ class _Turn:
     def box(self, box: Any) -> None:
         box.at = self.point(box.at)
         box.yaw_deg += self._degrees
+
+    def mover(self, mover: Any) -> None:
+        mover.way = [self.point(p) for p in mover.way]
+        mover.yaw_deg += self._degrees
 
     def stairs(self, stairs: Any) -> None:
         stairs.from_, stairs.to = self.point(stairs.from_), self.point(stairs.to)

@@ -20,6 +20,7 @@ class Table:
     names: dict[str, str] = field(default_factory=dict)  # key -> attribute, where they differ
 
 
+SLOPE = Table("SlopePlan", {"wall": "whole", "knee": "number", "reach": "number"}, ("wall",))
 ROOM = Table(
     "RoomPlan",
     {
@@ -36,10 +37,22 @@ ROOM = Table(
         "wall_colour": "colour",
         "brightness": "number",
         "lamps": "points",
+        "slope": SLOPE,
     },
     ("id", "polygon"),
 )
-LEAF = Table("DoorLeafPlan", {"room": "text", "angle_deg": "number", "hinge": "text"}, ("room",))
+LEAF = Table(
+    "DoorLeafPlan",
+    {
+        "room": "text",
+        "angle_deg": "number",
+        "hinge": "text",
+        "set_back": "number",
+        "pair": "flag",
+        "turns": "points",
+    },
+    ("room",),
+)
 DOOR = Table(
     "DoorPlan",
     {"rooms": "texts", "at": "point", "width": "number", "height": "number", "leaf": LEAF},
@@ -56,6 +69,7 @@ WINDOW = Table(
         "sill": "number",
         "radiator": "flag",
         "curtain": "flag",
+        "view": "text",
         "seed": "whole",
     },
     ("room", "wall", "along"),
@@ -115,6 +129,35 @@ STAIRS = Table(
     ("room", "from", "to", "rise"),
     {"from": "from_"},
 )
+PARTITION = Table(
+    "PartitionPlan",
+    {
+        "room": "text",
+        "from": "point",
+        "to": "point",
+        "height": "number",
+        "thickness": "number",
+        "kind": "text",
+        "mullions": "number",
+    },
+    ("room", "from", "to"),
+    {"from": "from_"},
+)
+MOVER = Table(
+    "MoverPlan",
+    {
+        "kind": "text",
+        "room": "text",
+        "pose": "text",
+        "way": "points",
+        "speed": "number",
+        "start_s": "number",
+        "yaw_deg": "number",
+        "seed": "whole",
+    },
+    ("room", "way"),
+)
+ROBOT = Table("RobotPlan", {"width": "number", "ahead": "number", "below": "number"})
 WAYPOINT = Table(
     "WaypointPlan",
     {
@@ -141,6 +184,7 @@ PATH = Table(
         "clearance": "number",
         "closed": "flag",
         "waypoints": [WAYPOINT],
+        "robot": ROBOT,
     },
     ("waypoints",),
 )
@@ -158,11 +202,13 @@ PLAN = Table(
         "markers": [MARKER],
         "boxes": [BOX],
         "stairs": [STAIRS],
+        "partitions": [PARTITION],
+        "movers": [MOVER],
         "path": PATH,
     },
     ("rooms", "path"),
 )
 # Read by the loader itself.
 CAMERA_KEYS = ("width", "height", "fx", "fy", "cx", "cy")
-EXTRA_KEYS = ("rotate_deg", "camera")
+EXTRA_KEYS = ("rotate_deg", "camera", "sensor", "effects")
 COMMENT = "comment"  # allowed in every object, ignored

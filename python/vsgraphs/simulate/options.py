@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from vsgraphs.compiled import core
 from vsgraphs.errors import InputError
-from vsgraphs.plans import LoadedPlan
 from vsgraphs.reading import shown
 
-NOISE = ("sensor", "clean")
 _MOST = 1_000_000
 _MOST_WORKERS = 256
-_NOT_OPTIONS = ("none", "validate", "seed")
 
 
 @dataclass(frozen=True)
@@ -27,6 +21,7 @@ class Output:
     jpeg_quality: int = 90
     labels_every: int = 5  # class and instance images with each n-th written frame; 0: none
     overwrite: bool = False  # replace a sequence an earlier call wrote there
+    motion: bool = False  # imu.txt and odometry.txt beside the frames
     workers: int | None = None  # threads; the processors' number, at most 4, unless given
 
     def check(self) -> None:
@@ -43,45 +38,3 @@ class Output:
             raise InputError(
                 f"workers must be at least 1 and at most {_MOST_WORKERS}, not {shown(self.workers)}"
             )
-
-
-def noise_options(noise: str | Mapping[str, float | bool], seed: int) -> Any:
-    """The core's NoiseOptions for "sensor", "clean" or changes to "sensor"; InputError names the fault."""
-    kinds = core().NoiseOptions
-    if isinstance(noise, str):
-        if noise not in NOISE:
-            raise InputError(f"noise must be one of {', '.join(NOISE)}, not {shown(noise)}")
-        options = kinds() if noise == "sensor" else kinds.none()
-    else:
-        options = kinds()
-        known = [
-            name
-            for name in dir(options)
-            if not name.startswith("_") and name not in ("none", "validate", "seed")
-        ]
-        for key, value in noise.items():
-            if key not in known:
-                raise InputError(f"unknown noise option '{key}'; known: {', '.join(known)}")
-            try:
-                setattr(options, key, value)
-            except TypeError:
-                raise InputError(f"noise.{key} cannot be {shown(value)}") from None
-    if not 0 <= seed < 2**63:
-        raise InputError(f"seed must lie in 0..2^63-1, not {seed}")
-    options.seed = seed
-    try:
-        options.validate()
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    return options
-
-
-def camera_of(loaded: LoadedPlan) -> Any:
-    """The core's Camera for a plan; a Kinect-like 640x480 where it names none."""
-    fields: dict[str, Any] = loaded.camera or {
-        "width": 640, "height": 480, "fx": 525.0, "fy": 525.0, "cx": 319.5, "cy": 239.5,
-    }  # fmt: skip
-    try:
-        return core().Camera(**fields, depth_min_m=0.35, depth_max_m=6.0)
-    except ValueError as error:
-        raise InputError(f"{loaded.source}: {error}") from None

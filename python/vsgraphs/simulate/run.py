@@ -12,8 +12,10 @@ from typing import Any
 from vsgraphs.compiled import core
 from vsgraphs.errors import InputError
 from vsgraphs.plans import LoadedPlan, load_plan
+from vsgraphs.simulate.camera import simulated_camera
 from vsgraphs.simulate.folder import FolderInTheMaking
-from vsgraphs.simulate.options import Output, camera_of, noise_options
+from vsgraphs.simulate.options import Output
+from vsgraphs.simulate.stream import Shot, schedule
 from vsgraphs.simulate.writer import Record, SequenceWriter
 
 
@@ -27,12 +29,14 @@ class Simulation:
     path_length_m: float
 
 
-def simulate(
+def simulate(  # noqa: PLR0913  (keywords, each with its default)
     plan: str | Path | Mapping[str, Any] | LoadedPlan,
     out_dir: str | Path,
     *,
     seed: int = 0,
     noise: str | Mapping[str, float | bool] = "sensor",
+    sensor: str | None = None,
+    effects: Mapping[str, Any] | None = None,
     frames: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
@@ -48,7 +52,9 @@ def simulate(
       plan: name of an included plan, a plan file, nested dicts, or what `load_plan` returned.
       out_dir: created; must not exist or be empty, unless `output.overwrite`.
       seed: which draw of the sensor's noise. The place, the walk and the truth depend on the plan alone.
-      noise: "sensor" (all effects), "clean" (none), or options of `_core.NoiseOptions` changed from "sensor".
+      noise: "sensor", "clean" (exact), or effects.
+      sensor: classic, clean, kinect1, kinect2, d435 or iphone_lidar; the plan's, or classic, unless given.
+      effects: of the camera and its frames, by name (`effect_names`), before the sensor's and the plan's.
       frames: at most so many frames are written.
       progress: called with (frames written, frames in all).
       should_stop: asked after each frame.
@@ -59,10 +65,9 @@ def simulate(
     options = output or Output()
     options.check()
     loaded = plan if isinstance(plan, LoadedPlan) else load_plan(plan)
-    sensor = noise_options(noise, seed)
+    camera = simulated_camera(loaded, noise=noise, sensor=sensor, effects=effects, seed=seed)
     if options.fps is not None:
         loaded.plan.fps = options.fps
-    camera = camera_of(loaded)
     try:
         scene = core().build_scene(loaded.plan)
     except ValueError as error:
@@ -71,21 +76,22 @@ def simulate(
     if not indices:
         raise InputError(f"frames must be at least 1, not {frames}")
     with FolderInTheMaking(Path(out_dir), overwrite=options.overwrite) as folder:
-        writer = SequenceWriter(scene, camera, sensor, folder.path, options)
+        writer = SequenceWriter(scene, camera, folder.path, options)
+        shots = schedule(indices, loaded.plan.fps, camera.stream, seed)
         try:
-            records = _render_all(writer, indices, options.workers, progress, should_stop)
+            records = _render_all(writer, shots, options.workers, progress, should_stop)
         except OSError as error:
             raise InputError(f"cannot write {out_dir}: {error.strerror or error}") from None
         if not records:
             return Simulation(Path(out_dir), 0, complete=False, path_length_m=0.0)
         length = writer.write_lists(records, loaded)
         folder.keep()
-    return Simulation(Path(out_dir), len(records), len(records) == len(indices), length)
+    return Simulation(Path(out_dir), len(records), len(records) == len(shots), length)
 
 
 def _render_all(
     writer: SequenceWriter,
-    indices: list[int],
+    shots: list[Shot],
     workers: int | None,
     progress: Callable[[int, int], None] | None,
     should_stop: Callable[[], bool] | None,
@@ -94,7 +100,7 @@ def _render_all(
     workers = workers or min(4, len(os.sched_getaffinity(0)))
     done: dict[int, Record] = {}
     pending: dict[Future[Record], int] = {}
-    upcoming = iter(enumerate(indices))
+    upcoming = iter(enumerate(shots))
     stopped = False
     with ThreadPoolExecutor(workers) as pool:
         while True:
@@ -103,15 +109,15 @@ def _render_all(
                     following = next(upcoming, None)
                     if following is None:
                         break
-                    number, index = following
-                    pending[pool.submit(writer.frame, index, number)] = number
+                    number, shot = following
+                    pending[pool.submit(writer.frame, shot, number)] = number
                 if not pending:
                     break
                 finished, _ = wait(pending, return_when=FIRST_COMPLETED)
                 for future in finished:
                     done[pending.pop(future)] = future.result()
                 if progress is not None:
-                    progress(len(done), len(indices))
+                    progress(len(done), len(shots))
                 if not stopped and should_stop is not None and should_stop():
                     stopped = True
             except KeyboardInterrupt:

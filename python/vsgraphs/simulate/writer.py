@@ -13,18 +13,19 @@ from PIL import Image
 
 from vsgraphs.compiled import core
 from vsgraphs.plans import LoadedPlan
+from vsgraphs.simulate.camera import SimulatedCamera
 from vsgraphs.simulate.folder import MARK
+from vsgraphs.simulate.motion import write_motion
 from vsgraphs.simulate.options import Output
-
-TIMESTAMP_OFFSET_S = 1_700_000_000.0
-_TRUTH_HEADER = "# timestamp tx ty tz qx qy qz qw  (world_from_camera, optical axes)"
+from vsgraphs.simulate.png import write_grey_png
+from vsgraphs.simulate.stream import TIMESTAMP_OFFSET_S, Shot
 
 
 @dataclass(frozen=True)
 class Record:
-    """A frame on disk."""
+    """A frame on disk, and where the camera truly was at the moment it stands for."""
 
-    stamp: str
+    shot: Shot
     has_labels: bool
     position: tuple[float, float, float]
     quaternion: tuple[float, float, float, float]
@@ -33,8 +34,9 @@ class Record:
 class SequenceWriter:
     """Renders and writes frames, from any thread, into one folder."""
 
-    def __init__(self, scene: Any, camera: Any, noise: Any, folder: Path, options: Output) -> None:
-        self._scene, self._camera, self._noise = scene, camera, noise
+    def __init__(self, scene: Any, camera: SimulatedCamera, folder: Path, options: Output) -> None:
+        self._scene, self._camera, self._noise = scene, camera.camera, camera.noise
+        self._chosen = camera.chosen
         self._folder, self._options = folder, options
         self._seen = core().ObservationCounter(scene)
         self._lock = threading.Lock()
@@ -42,26 +44,26 @@ class SequenceWriter:
         for name in ("rgb", "depth", *(("label", "instance") if options.labels_every else ())):
             (folder / name).mkdir()
 
-    def frame(self, index: int, number: int) -> Record:
-        """Renders frame `index` and writes it as the `number`-th of the sequence."""
+    def frame(self, shot: Shot, number: int) -> Record:
+        """Renders a frame and writes it as the `number`-th of the sequence."""
         if not hasattr(self._local, "renderer"):
             self._local.renderer = core().Renderer(self._scene, self._camera, self._noise)
-        frame = self._local.renderer.render(index)
-        stamp = f"{TIMESTAMP_OFFSET_S + frame.time_s:.6f}"
+        frame = self._local.renderer.render(shot.source)
         rgb = Image.fromarray(frame.rgb)
         if self._options.image_format == "jpg":
-            rgb.save(self._folder / "rgb" / f"{stamp}.jpg", quality=self._options.jpeg_quality)
+            rgb.save(self._folder / "rgb" / f"{shot.rgb_stamp}.jpg", quality=self._options.jpeg_quality)
         else:
-            rgb.save(self._folder / "rgb" / f"{stamp}.png", compress_level=1)
-        _save_png(frame.depth, self._folder / "depth" / f"{stamp}.png")
+            rgb.save(self._folder / "rgb" / f"{shot.rgb_stamp}.png", compress_level=1)
+        write_grey_png(frame.depth, self._folder / "depth" / f"{shot.depth_stamp}.png")
         has_labels = self._options.labels_every > 0 and number % self._options.labels_every == 0
         if has_labels:
-            _save_png(frame.label, self._folder / "label" / f"{stamp}.png")
-            _save_png(frame.instance, self._folder / "instance" / f"{stamp}.png")
-        pose = frame.world_from_camera
+            write_grey_png(frame.label, self._folder / "label" / f"{shot.rgb_stamp}.png")
+            write_grey_png(frame.instance, self._folder / "instance" / f"{shot.rgb_stamp}.png")
+        pose, q = frame.world_from_camera, frame.quaternion_xyzw
+        if shot.source != shot.index:
+            pose, q = self._local.renderer.pose(shot.index)
         x, y, z = (float(v) for v in pose[:3, 3])
-        a, b, c, d = frame.quaternion_xyzw
-        record = Record(stamp, has_labels, (x, y, z), (a, b, c, d))
+        record = Record(shot, has_labels, (x, y, z), (q[0], q[1], q[2], q[3]))
         with self._lock:
             self._seen.add(frame)
         return record
@@ -69,10 +71,10 @@ class SequenceWriter:
     def write_lists(self, records: list[Record], loaded: LoadedPlan) -> float:
         """Writes everything but the images; returns the path's length, m."""
         folder, kind = self._folder, self._options.image_format
-        stamps = [record.stamp for record in records]
-        _lines(folder / "rgb.txt", (f"{s} rgb/{s}.{kind}" for s in stamps))
-        _lines(folder / "depth.txt", (f"{s} depth/{s}.png" for s in stamps))
-        _lines(folder / "associations.txt", (f"{s} rgb/{s}.{kind} {s} depth/{s}.png" for s in stamps))
+        stamps = [(record.shot.rgb_stamp, record.shot.depth_stamp) for record in records]
+        _lines(folder / "rgb.txt", (f"{s} rgb/{s}.{kind}" for s, _ in stamps))
+        _lines(folder / "depth.txt", (f"{d} depth/{d}.png" for _, d in stamps))
+        _lines(folder / "associations.txt", (f"{s} rgb/{s}.{kind} {d} depth/{d}.png" for s, d in stamps))
         _lines(
             folder / "groundtruth.txt",
             [
@@ -81,13 +83,16 @@ class SequenceWriter:
             ],
         )
         if self._options.labels_every:
-            labelled = [r.stamp for r in records if r.has_labels]
+            labelled = [r.shot.rgb_stamp for r in records if r.has_labels]
             _lines(
                 folder / "labels.txt",
                 ["# timestamp class(8 bit) instance(16 bit)"]
                 + [f"{s} label/{s}.png instance/{s}.png" for s in labelled],
             )
         _lines(folder / "camera.yaml", self._camera_lines(loaded))
+        if self._options.motion:
+            until = (records[-1].shot.index + 0.5) / loaded.plan.fps
+            write_motion(self._scene, folder, until, self._noise.seed)
         truth, length = self._truth(records, loaded)
         (folder / MARK).write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
         return length
@@ -95,6 +100,8 @@ class SequenceWriter:
     def _camera_lines(self, loaded: LoadedPlan) -> list[str]:
         camera, fps = self._camera, loaded.plan.fps / self._options.every
         lines = ["# pinhole, no distortion, pixel centres at integers"]
+        if self._noise.lens != "none":
+            lines = ["# pixel centres at integers", *_lens_lines(self._noise)]
         lines += [f"{key}: {getattr(camera, key)}" for key in ("width", "height", "fx", "fy", "cx", "cy")]
         lines += [f"fps: {fps}", f"depth_scale: {camera.depth_scale}"]
         near, far = (
@@ -123,10 +130,13 @@ class SequenceWriter:
             "duration_s": round(self._scene.duration_s, 3),
             "fps_default": plan.fps,
             "noise_seed": self._noise.seed,
+            **self._chosen,
             "summary": {
                 "frames": len(records),
                 "fps": fps,
-                "duration_s": round(float(records[-1].stamp) - float(records[0].stamp), 3),
+                "duration_s": round(
+                    float(records[-1].shot.truth_stamp) - float(records[0].shot.truth_stamp), 3
+                ),
                 "path_length_m": round(length, 3),
                 "walls_observed": sum(wall["observed"] for wall in found["walls"]),
                 "rooms_visited": sum(room["visited"] for room in found["rooms"]),
@@ -136,13 +146,15 @@ class SequenceWriter:
         return truth, length
 
 
-def _save_png(pixels: np.ndarray[Any, Any], path: Path) -> None:
-    Image.fromarray(pixels).save(path, compress_level=1)
+def _lens_lines(noise: Any) -> list[str]:
+    if noise.lens == "radial_tangential":
+        return [f"distortion: [{', '.join(map(str, (*noise.lens_k, 0.0, 0.0, 0.0, 0.0, 0.0)[:5]))}]"]
+    return [f"model: {noise.lens}", f"model_coefficients: [{', '.join(map(str, noise.lens_k))}]"]
 
 
 def _pose_line(record: Record) -> str:
     numbers = " ".join(f"{v:.7f}" for v in (*record.position, *record.quaternion))
-    return f"{record.stamp} {numbers}"
+    return f"{record.shot.truth_stamp} {numbers}"
 
 
 def _lines(path: Path, lines: Any) -> None:

@@ -22,6 +22,10 @@ class Draw:
         """True in `share` of all cases."""
         return self._random.random() < share
 
+    def share(self) -> float:
+        """In [0, 1)."""
+        return self._random.random()
+
     def whole(self, below: int) -> int:
         """0 to below - 1."""
         return int(self._random.random() * below)
