@@ -37,7 +37,14 @@ class PlaneGathering {
  public:
   PlaneGathering(const Map& map, const WindowProblem& problem)
       : map_(map), problem_(problem), pose_of_(pose_positions(map, problem)) {
-    for (const KeyframeId id : problem.keyframe_of_pose) near_.insert(map.stretch_of(id));
+    std::set<KeyframeId> stretches;
+    for (const KeyframeId id : problem.keyframe_of_pose) stretches.insert(map.stretch_of(id));
+    const auto& all = map.retired_keyframes();
+    near_.resize(all.index_bound());
+    for (std::uint32_t index = 0; index < all.index_bound(); ++index) {
+      const KeyframeId id = all.at_index(index);
+      near_[index] = id.valid() && stretches.contains(map.stretch_of(id));
+    }
   }
 
   // Sorts a plane's observations; false if no free pose sees it, unless it is `wanted` all the same.
@@ -48,7 +55,7 @@ class PlaneGathering {
     if (only_observer_of(plane).valid()) return false;
     far_.clear();
     for (const PlaneObservation& o : plane.observations) {
-      if (near_.contains(map_.stretch_of(o.keyframe)))
+      if (near_[o.keyframe.index])
         take(o, 1);
       else
         far_.push_back(&o);
@@ -96,7 +103,7 @@ class PlaneGathering {
   const Map& map_;
   const WindowProblem& problem_;
   std::vector<int> pose_of_;
-  std::set<KeyframeId> near_;  // stretches with a keyframe in the window
+  std::vector<std::uint8_t> near_;  // by keyframe index: of a stretch with a keyframe in the window
   std::vector<const PlaneObservation*> far_;
   bool free_ = false;
   std::vector<SeenByPose> inside_;
