@@ -36,8 +36,11 @@ void SpaceKeeper::follow(const Map& /*before*/, const MapEdit& edit, const Map& 
 void SpaceKeeper::take_over(const Map& other, const SpaceKeeper* absorbed) {
   const bool usable = absorbed && absorbed->options_.voxel_m == options_.voxel_m &&
                       absorbed->options_.range_m == options_.range_m;
-  if (!usable || absorbed->look_for_new_)
-    other.keyframes().for_each([this](KeyframeId id, const Keyframe&) { new_.insert(id); });
+  if (!usable || absorbed->look_for_new_) {
+    other.keyframes().for_each([&](KeyframeId id, const Keyframe&) {
+      if (!usable || !absorbed->knows(id)) new_.insert(id);
+    });
+  }
   if (!usable) return;
   for (const auto& [stretch, part] : absorbed->parts_) {
     const auto [at, added] = parts_.emplace(stretch, part);

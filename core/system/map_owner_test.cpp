@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/map/test_map.h"
+#include "core/scene/surface_keeper.h"
 
 namespace vsgraphs {
 namespace {
@@ -124,6 +125,9 @@ TEST_F(MapOwnerTest, WhatFailsIsSwitchedOffAndMappingGoesOn) {
   for (const EditEvent& event : owner.edits()) EXPECT_NE(event.kind, EditEvent::Kind::planes);
   owner.insert(request(9, 0.2));
   EXPECT_EQ(cell.take().snapshot->keyframes().size(), 2U);
+  EXPECT_EQ(owner.followers().find<SurfaceKeeper>(), nullptr) << "it knows nothing of what came since";
+  EXPECT_EQ(cell.take().places->size(), 2) << "places go on";
+  owner.find_rooms(true);
 
   config.system.stop_on_fault = true;
   SnapshotCell other_cell;
