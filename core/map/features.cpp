@@ -33,11 +33,12 @@ bool FeatureSet::consistent() const {
   constexpr int most_cells = 1 << 12;  // a side: 65,536 px
   const bool sized = columns_ >= 0 && rows_ >= 0 && columns_ <= most_cells && rows_ <= most_cells;
   const bool housed = features_.empty() || (columns_ > 0 && rows_ > 0);
-  constexpr float most_px = 1e6F;
+  constexpr float most_px = 1e6F, nearest_m = 1e-6F;  // its inverse is a number
   return sized && housed && features_.size() == descriptors_.size() && features_.size() <= 65535 &&
          std::all_of(features_.begin(), features_.end(), [](const Feature& f) {
-           return std::abs(f.u) < most_px && std::abs(f.v) < most_px && f.depth_m >= 0 &&
-                  f.depth_m < most_px && std::abs(f.angle_rad) < 10 && f.level < 16;
+           return std::abs(f.u) < most_px && std::abs(f.v) < most_px &&
+                  (f.depth_m == 0 || f.depth_m > nearest_m) && f.depth_m < most_px &&
+                  std::abs(f.angle_rad) < 10 && f.level < 16;
          });
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/base/rng.h"
 #include "core/base/test_archive.h"
 #include "core/map/draft.h"
@@ -161,6 +163,16 @@ TEST(MapArchive, ForgedSectionsAreErrorsOrMaps) {
   }
   EXPECT_GT(errors, 100);
   EXPECT_GT(maps, 100);
+}
+
+TEST(MapArchive, AFeatureAtNextToNoDistanceIsNone) {
+  Map map = full_map();
+  Keyframe keyframe = *map.keyframes().find(map.keyframes().at_index(0));
+  keyframe = test::with_features_changed(keyframe, Camera{}, [](std::vector<Feature>& features) {
+    features[0].depth_m = std::numeric_limits<float>::denorm_min();
+  });
+  test::add_keyframe(map, keyframe);
+  EXPECT_THROW(map_of(bytes_of(map)), InputError);
 }
 
 }  // namespace
