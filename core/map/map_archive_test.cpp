@@ -167,7 +167,7 @@ TEST(MapArchive, ForgedSectionsAreErrorsOrMaps) {
 
 TEST(MapArchive, AFeatureAtNextToNoDistanceIsNone) {
   Map map = full_map();
-  Keyframe keyframe = *map.keyframes().find(map.keyframes().at_index(0));
+  Keyframe keyframe = *map.keyframes().find(map.keyframes().at_index(2));
   keyframe = test::with_features_changed(keyframe, Camera{}, [](std::vector<Feature>& features) {
     features[0].depth_m = std::numeric_limits<float>::denorm_min();
   });
