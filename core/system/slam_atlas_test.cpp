@@ -29,7 +29,16 @@ class Walk {
     const int step = from_px < to_px ? 8 : -8;
     for (int px = from_px; px != to_px; px += step) see(px);
   }
-  void finish() { slam_.finish(); }
+  // Whatever happened to the maps, all that follows them fits them, and they could be saved.
+  void finish() {
+    slam_.finish();
+    for (const MapState& state : slam_.atlas_state().maps) {
+      EXPECT_STREQ(wrong_with_references(*state.map), nullptr);
+      EXPECT_STREQ(wrong_with_values(*state.map), nullptr);
+      for (const auto& follower : state.followers.all())
+        EXPECT_STREQ(follower->wrong_with(*state.map), nullptr) << follower->name();
+    }
+  }
   Slam& slam() { return slam_; }
 
   // Largest distance from the truth over the trajectory, frames in the dark aside.
