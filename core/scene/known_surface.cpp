@@ -178,7 +178,6 @@ void KnownSurface::put_together(const StretchPoses& stretches) {
     evidence_.add(evidence);
     evidence_.expect(extent.points());
   }
-  find_ball();
 }
 
 bool KnownSurface::fits_together() const {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/base/rng.h"
+#include "core/simulate/depth_sensors.h"
 #include "core/simulate/sensor_noise.h"
 #include "core/simulate/smooth_noise.h"
 
@@ -18,17 +19,6 @@ constexpr float edge_limit_px = 0.4f,
 // Chance of losing a reading to distance: rare up to 3.5 m, one in six at 6 m.
 float far_loss(float z) {
   return 0.0003f + 0.035f * std::clamp(z - 3.5f, 0.0f, 1.0f) + 0.10f * std::clamp(z - 4.6f, 0.0f, 1.5f);
-}
-
-// How much disparity bends around (u, v): zero on planes, the jump at edges.
-float bend_px(const Image<float>& disparity, int u, int v) {
-  const bool inner_u = u >= edge_reach_px && u + edge_reach_px < disparity.width;
-  const bool inner_v = v >= edge_reach_px && v + edge_reach_px < disparity.height;
-  const float* here = &disparity.at(u, v);
-  const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(edge_reach_px) * disparity.width;
-  const float across = inner_u ? here[-edge_reach_px] + here[edge_reach_px] - 2 * *here : 0.0f;
-  const float down = inner_v ? here[-rows] + here[rows] - 2 * *here : 0.0f;
-  return std::max(std::abs(across), std::abs(down));
 }
 
 // Whether each pixel of a row has no reading. Chances are drawn for blocks of 2 x 2 pixels: matching works on patches.
@@ -50,7 +40,7 @@ class Holes {
     float loss = far_loss(z);
     if (cosine < grazing_) loss += 1 - cosine / grazing_;
     if (label == static_cast<std::uint8_t>(SceneClass::window)) loss += 4 * (blotches_.at(u) - 0.4f);
-    return chance < loss || bend_px(disparity, u, v) > edge_limit_px + edge_spread_px * chance;
+    return chance < loss || bend_at(disparity, u, v, edge_reach_px) > edge_limit_px + edge_spread_px * chance;
   }
 
  private:
