@@ -37,7 +37,8 @@ Matrix6d covariance_of(const Matrix6d& information) {
 
 Matrix6d compose_covariance(const Matrix6d& of_a_from_b, const Se3& b_from_c, const Matrix6d& of_b_from_c) {
   const Matrix6d carry = se3_adjoint(b_from_c.inverse());
-  return carry * of_a_from_b * carry.transpose() + of_b_from_c;
+  const Matrix6d composed = carry * of_a_from_b * carry.transpose() + of_b_from_c;
+  return 0.5 * (composed + composed.transpose());
 }
 
 Matrix6d inverted_covariance(const Se3& a_from_b, const Matrix6d& of_a_from_b) {

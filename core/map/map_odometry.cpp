@@ -4,6 +4,17 @@
 
 namespace vsgraphs {
 
+namespace {
+
+// A gap where nothing is known any more of where the two stand to one another.
+OdometryStep composed(const OdometryStep& first, const OdometryStep& second) {
+  const OdometryStep both{first.before, (first.before_from_camera * second.before_from_camera).normalized(),
+                          compose_covariance(first.covariance, second.before_from_camera, second.covariance)};
+  return is_covariance(both.covariance) ? both : OdometryStep{};
+}
+
+}  // namespace
+
 void Map::pass_on_steps(KeyframeId gone) {
   const std::optional<OdometryStep> first = keyframes_.find(gone)->odometry;
   for (std::uint32_t index = gone.index + 1; index < keyframes_.index_bound(); ++index) {
@@ -12,13 +23,8 @@ void Map::pass_on_steps(KeyframeId gone) {
     if (!next || !next->odometry || next->odometry->before != gone) continue;
     const OdometryStep second = *next->odometry;
     std::optional<OdometryStep>& passed_on = keyframes_.edit(id)->odometry;
-    if (first && first->before.valid()) {
-      passed_on =
-          OdometryStep{first->before, (first->before_from_camera * second.before_from_camera).normalized(),
-                       compose_covariance(first->covariance, second.before_from_camera, second.covariance)};
-    } else {
-      passed_on = first;  // a gap, or yet to be measured
-    }
+    passed_on =
+        first && first->before.valid() ? composed(*first, second) : first;  // a gap, or yet to be measured
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/pose_covariance.h"
+#include "core/map/map_checks.h"
 #include "core/map/test_map.h"
 
 namespace vsgraphs {
@@ -61,6 +62,35 @@ TEST_F(OdometrySteps, AreMeasuredAnewWhereTheCulledKeyframeWaitedForIts) {
   map_.apply(SetOdometry{last, {waiting, standing_at(1), Matrix6d::Identity()}});
   map_.apply(RemoveKeyframe{waiting, ids_[3]});
   EXPECT_FALSE(map_.keyframes().find(last)->odometry.has_value());
+}
+
+// However long the way, the map can be saved.
+TEST_F(OdometrySteps, EndWhereNothingIsKnownAnyMoreOfTheWhole) {
+  for (std::size_t i = 1; i < 4; ++i) {
+    OdometryStep loose = step(i);
+    loose.covariance = Vector6d::Constant(4e5).asDiagonal();
+    map_.apply(SetOdometry{ids_[i], loose});
+  }
+  map_.apply(RemoveKeyframe{ids_[2], ids_[0]});
+  EXPECT_STREQ(wrong_with_values(map_), nullptr);
+  ASSERT_TRUE(odometry(3).has_value());
+  EXPECT_FALSE(odometry(3)->before.valid());
+}
+
+TEST_F(OdometrySteps, OverManyCulledKeyframesAreStillGood) {
+  std::vector<KeyframeId> more = ids_;
+  for (int i = 4; i < 60; ++i) {
+    more.push_back(add_keyframe(map_, keyframe_seeing(camera_, standing_at(i), points_)));
+    Matrix6d covariance = Matrix6d::Identity() * 0.3;
+    covariance(0, 5) = covariance(5, 0) = 0.1;
+    map_.apply(SetOdometry{
+        more.back(), {more[more.size() - 2], Se3(so3_exp({0.3, 0.2, 0.1}), {0.7, 0.5, 0.1}), covariance}});
+  }
+  for (std::size_t i = 2; i + 1 < more.size(); ++i) {
+    map_.apply(RemoveKeyframe{more[i], more[0]});
+    ASSERT_STREQ(wrong_with_values(map_), nullptr) << i;
+  }
+  EXPECT_EQ(map_.keyframes().find(more.back())->odometry->before, more[1]);
 }
 
 TEST_F(OdometrySteps, AreNoneOfTheMapsPoses) {

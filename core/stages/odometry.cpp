@@ -136,9 +136,10 @@ OdometryStep measure_step(const Map& map, KeyframeId keyframe, const Measurement
 void measure_odometry(const MeasurementModel& model, const Window& window, KeyframeId newest, Draft& draft) {
   std::vector<KeyframeId> left;
   draft.map().keyframes().for_each([&](KeyframeId id, const Keyframe& keyframe) {
-    if (keyframe.odometry || !(id < newest) || left.size() >= at_most) return;
+    if (keyframe.odometry || !(id < newest)) return;
     if (std::find(window.free.begin(), window.free.end(), id) == window.free.end()) left.push_back(id);
   });
+  if (left.size() > at_most) left.erase(left.begin(), left.end() - at_most);
   for (const KeyframeId id : left) draft.record(SetOdometry{id, measure_step(draft.map(), id, model)});
 }
 

@@ -12,8 +12,8 @@ namespace vsgraphs {
 // keyframe before it. The keyframe must live. Cost: a joint problem of at most six keyframes, about a millisecond.
 OdometryStep measure_step(const Map& map, KeyframeId keyframe, const MeasurementModel& model);
 
-// Records the steps of keyframes older than `newest` that have none yet and are no longer free in `window`: oldest first, and
-// so many at most that a map which was away, or came from a file, does not hold up the mapper.
+// Records the steps of keyframes older than `newest` that have none yet and are no longer free in `window`: the newest
+// ones, four at most, so that a map which was away, or came from a file, does not hold up the mapper.
 void measure_odometry(const MeasurementModel& model, const Window& window, KeyframeId newest, Draft& draft);
 
 }  // namespace vsgraphs
