@@ -293,8 +293,10 @@ void bind_slam(nb::module_& m) {
       .def(
           "snapshot", [](const Slam& s) { return std::const_pointer_cast<Map>(s.snapshot()); },
           "The newest map. Cheap, from any thread.")
-      .def("atlas_state", &Slam::atlas_state, nb::call_guard<nb::gil_scoped_release>(),
-           "All maps as known now; complete after finish(). Any thread; tracking is not held up.")
+      .def(
+          "atlas_state", &Slam::atlas_state, nb::call_guard<nb::gil_scoped_release>(),
+          "All maps as known now, with all that was derived from them. Any thread; tracking is not held up.\n"
+          "Waits until mapping has done the keyframe that it is at.")
       .def("stop", &Slam::stop, nb::call_guard<nb::gil_scoped_release>(),
            "Has the run end soon; any thread, also while another one is in track() or finish().\n"
            "A track() that waits for mapping passes its frame over, as do all later ones (status waiting,\n"

@@ -32,8 +32,9 @@ class Executor {
 
   // The newest maps; any thread.
   virtual SnapshotCell::Content content() const = 0;
-  // Of the map worked on, after finish().
-  virtual Followers followers() const = 0;
+  // All maps with all that follows them, the one worked on last; maps without keyframes are none. Any thread; it waits for the
+  // frame or the keyframe that is being worked on, and holds up mapping while what follows the map is copied.
+  virtual std::vector<MapState> maps() const = 0;
   virtual std::int64_t backlog() const = 0;
   // Time the tracker spent waiting for the mapper, s.
   virtual double waited_s() const { return 0.0; }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <string>
+
 namespace vsgraphs {
 namespace {
 
@@ -24,6 +27,51 @@ TEST(FrameRecords, AreReadInOrderOverChunks) {
   const auto all = indices(records.view());
   ASSERT_EQ(std::ssize(all), count);
   for (std::int64_t i = 0; i < count; ++i) EXPECT_EQ(all[static_cast<std::size_t>(i)], i);
+}
+
+class FrameRecordsOfADay : public ::testing::Test {
+ protected:
+  static FrameRecord somewhere(std::int64_t i) {
+    const double x = static_cast<double>(i);
+    return {i,
+            0.03 * x,
+            {{static_cast<std::uint32_t>(i / 7), 1}, Se3(so3_exp({0.1 * x, 0.2, 0}), {x, 1 / (x + 1), 0.1})}};
+  }
+  static void expect_all(const FrameRecords::View& view, std::int64_t count) {
+    std::int64_t at = 0;
+    view.for_each([&at](const FrameRecord& r) {
+      const FrameRecord right = somewhere(at++);
+      ASSERT_EQ(r.index, right.index);
+      ASSERT_EQ(r.timestamp_s, right.timestamp_s);
+      ASSERT_EQ(r.pose.keyframe, right.pose.keyframe);
+      ASSERT_EQ(r.pose.keyframe_from_camera.matrix(), right.pose.keyframe_from_camera.matrix());
+    });
+    EXPECT_EQ(at, count);
+  }
+  static constexpr std::int64_t count = (FrameRecords::chunks_in_memory + 5) * FrameRecords::chunk_size + 7;
+};
+
+TEST_F(FrameRecordsOfADay, AreReadFromTheFileAsTheyWere) {
+  FrameRecords records;
+  std::optional<FrameRecords::View> earlier;
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (i == 3 * std::int64_t{FrameRecords::chunk_size}) earlier = records.view();
+    records.append(somewhere(i));
+  }
+  EXPECT_EQ(records.chunks_in_file(), 6U);
+  expect_all(records.view(), count);
+  expect_all(*earlier, 3 * std::int64_t{FrameRecords::chunk_size});
+}
+
+TEST_F(FrameRecordsOfADay, StayInMemoryWhereNoFileCanBeMade) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before ? before : "";
+  setenv("TMPDIR", "/nowhere/at/all", 1);
+  FrameRecords records;
+  for (std::int64_t i = 0; i < count; ++i) records.append(somewhere(i));
+  before ? setenv("TMPDIR", kept.c_str(), 1) : unsetenv("TMPDIR");
+  EXPECT_EQ(records.chunks_in_file(), 0U);
+  expect_all(records.view(), count);
 }
 
 TEST(FrameRecords, AViewStaysWhatItWas) {

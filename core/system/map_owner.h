@@ -79,8 +79,8 @@ class MapOwner {
   std::uint64_t version() const { return map_.version(); }
   std::int64_t newest_frame() const { return newest_frame_; }  // that became a keyframe
   const std::vector<EditEvent>& edits() const { return edits_; }
-  // Of the map worked on; a copy.
-  Followers followers() const { return followers_.copy(); }
+  // All there are, the one worked on last, with a copy of what follows it; maps without keyframes are none.
+  std::vector<MapState> maps() const;
   // One lane for mapping, one for scene understanding.
   std::vector<const SpanRecorder*> spans() const { return {&spans_, &scene_spans_}; }
 

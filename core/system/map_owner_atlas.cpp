@@ -27,6 +27,12 @@ void MapOwner::start_from(const AtlasState& known) {
   publish_dormant();
 }
 
+std::vector<MapState> MapOwner::maps() const {
+  std::vector<MapState> all = *published_dormant_;
+  if (snapshot_->keyframes().size() > 0) all.push_back({snapshot_, followers_.copy()});
+  return all;
+}
+
 void MapOwner::publish_dormant() {
   auto states = std::make_shared<std::vector<MapState>>();
   for (const DormantMap& dormant : dormant_) states->push_back(dormant.state);

@@ -125,7 +125,8 @@ TEST_F(MapOwnerTest, WhatFailsIsSwitchedOffAndMappingGoesOn) {
   for (const EditEvent& event : owner.edits()) EXPECT_NE(event.kind, EditEvent::Kind::planes);
   owner.insert(request(9, 0.2));
   EXPECT_EQ(cell.take().snapshot->keyframes().size(), 2U);
-  EXPECT_EQ(owner.followers().find<SurfaceKeeper>(), nullptr) << "it knows nothing of what came since";
+  EXPECT_EQ(owner.maps().back().followers.find<SurfaceKeeper>(), nullptr)
+      << "it knows nothing of what came since";
   EXPECT_EQ(cell.take().places->size(), 2) << "places go on";
   owner.find_rooms(true);
 

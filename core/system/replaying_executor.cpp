@@ -1,6 +1,7 @@
 #include <atomic>
 #include <deque>
 #include <map>
+#include <mutex>
 
 #include "core/base/check.h"
 #include "core/system/executor.h"
@@ -24,6 +25,7 @@ class ReplayingExecutor : public Executor {
     const FrameEvent& event = schedule_.frames[next_frame_];
     if (event.timestamp_s != frame.timestamp_s) return std::nullopt;  // dropped in the recorded run
     ++next_frame_;
+    const std::lock_guard lock(owner_mutex_);
     advance_to(event.version);
     TrackedFrame result = tracking_.track(frame, cell_.take());
     if (result.keyframe_request) waiting_.push_back(result.keyframe_request);
@@ -44,12 +46,16 @@ class ReplayingExecutor : public Executor {
                 "replay: the schedule holds " + std::to_string(schedule_.frames.size()) +
                     " frames, but only " + std::to_string(next_frame_) +
                     " of them came; replay it on the sequence it was recorded on");
+    const std::lock_guard lock(owner_mutex_);
     advance_to(schedule_.edits.size());
   }
   void stop() override { stopped_ = true; }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
-  Followers followers() const override { return owner_.followers(); }
+  std::vector<MapState> maps() const override {
+    const std::lock_guard lock(owner_mutex_);
+    return owner_.maps();
+  }
   std::int64_t backlog() const override { return static_cast<std::int64_t>(waiting_.size()); }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
@@ -140,6 +146,7 @@ class ReplayingExecutor : public Executor {
   std::atomic<bool> stopped_ = false;
   SnapshotCell cell_;
   TrackingLane tracking_;
+  mutable std::mutex owner_mutex_;  // only maps() comes from another thread
   MapOwner owner_;
   std::size_t next_frame_ = 0;
   std::deque<std::shared_ptr<const KeyframeRequest>> waiting_;

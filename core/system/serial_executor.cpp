@@ -1,4 +1,5 @@
 #include <atomic>
+#include <mutex>
 
 #include "core/system/executor.h"
 #include "core/system/map_owner.h"
@@ -15,6 +16,7 @@ class SerialExecutor : public Executor {
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     if (stopped_) return std::nullopt;
+    const std::lock_guard lock(owner_mutex_);
     TrackedFrame result = tracking_.track(frame, cell_.take());
     const auto stopped = [this] { return stopped_.load(); };
     if (result.keyframe_request) owner_.work_on(*result.keyframe_request, stopped, stopped);
@@ -22,18 +24,24 @@ class SerialExecutor : public Executor {
     return result;
   }
   void label(std::int64_t frame_index, std::shared_ptr<const LabelGrid> labels) override {
+    const std::lock_guard lock(owner_mutex_);
     if (options_.builds_scene() && owner_.label(frame_index, *labels)) owner_.interpret_planes();
   }
   void mark(std::int64_t frame_index, std::shared_ptr<const MarkerDetections> detections) override {
+    const std::lock_guard lock(owner_mutex_);
     owner_.mark(frame_index, *detections);
   }
   void finish() override {
+    const std::lock_guard lock(owner_mutex_);
     if (!finished_) owner_.end_run([this] { return stopped_.load(); });
     finished_ = true;
   }
   void stop() override { stopped_ = true; }
   SnapshotCell::Content content() const override { return cell_.take(); }
-  Followers followers() const override { return owner_.followers(); }
+  std::vector<MapState> maps() const override {
+    const std::lock_guard lock(owner_mutex_);
+    return owner_.maps();
+  }
   std::int64_t backlog() const override { return 0; }
   std::vector<const SpanRecorder*> spans() const override { return lanes(tracking_, owner_); }
   Schedule schedule() const override { return {tracking_.frames(), owner_.edits()}; }
@@ -44,6 +52,7 @@ class SerialExecutor : public Executor {
   std::atomic<bool> stopped_ = false;
   SnapshotCell cell_;
   TrackingLane tracking_;
+  mutable std::mutex owner_mutex_;  // only maps() comes from another thread
   MapOwner owner_;
 };
 

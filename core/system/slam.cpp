@@ -159,13 +159,7 @@ Snapshot Slam::snapshot() const {
 
 AtlasState Slam::atlas_state() const {
   require_own_process();
-  const SnapshotCell::Content content = executor_->content();
-  AtlasState state{*content.dormant, loaded_};
-  if (content.snapshot->keyframes().size() > 0)
-    state.maps.push_back(
-        {content.snapshot,
-         ended_ ? executor_->followers() : Followers({std::make_shared<PlaceKeeper>(content.places)})});
-  return state;
+  return {executor_->maps(), loaded_};
 }
 
 std::int64_t Slam::backlog() const {

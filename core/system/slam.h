@@ -67,8 +67,9 @@ class Slam {
 
   // The newest published map; any thread, any time. Cost: one pointer.
   Snapshot snapshot() const;
-  // All maps as last published, the one being worked on last; any thread, any time, tracking is not held up. The free space
-  // of that one is there after finish() alone. Cost: a few pointers, after finish() a copy of the free space.
+  // All maps with all that was derived from them, the one being worked on last: what a run can go on from. Any thread, any time;
+  // tracking is not held up (a serial run's is). Waits until mapping has done the keyframe that it is at; cost: a copy of
+  // what is known of the surfaces, some milliseconds in a large map, for which mapping waits.
   AtlasState atlas_state() const;
   // Keyframes waiting for the mapper. Any thread, any time, at a cost that does not grow; tracking is not held up.
   std::int64_t backlog() const;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "core/base/check.h"
 #include "core/system/slam.h"
+#include "core/system/test_followers.h"
 #include "core/system/test_wall_scene.h"
 
 namespace vsgraphs {
@@ -17,7 +19,8 @@ using namespace test;
 
 class Walk {
  public:
-  explicit Walk(const Config& config, const AtlasState& known = {}) : slam_(config, small_camera(), known) {}
+  explicit Walk(const Config& config, const AtlasState& known = {})
+      : config_(config), slam_(config, small_camera(), known) {}
 
   TrackStatus see(int px) { return slam_.track(scene_.seen_from(px)).status; }
   // Dark for 1.6 s: time enough to be carried anywhere.
@@ -32,11 +35,15 @@ class Walk {
   // Whatever happened to the maps, all that follows them fits them, and they could be saved.
   void finish() {
     slam_.finish();
+    expect_followers_fit();
+  }
+  void expect_followers_fit() const {
     for (const MapState& state : slam_.atlas_state().maps) {
       EXPECT_STREQ(wrong_with_references(*state.map), nullptr);
       EXPECT_STREQ(wrong_with_values(*state.map), nullptr);
       for (const auto& follower : state.followers.all())
         EXPECT_STREQ(follower->wrong_with(*state.map), nullptr) << follower->name();
+      expect_followers_like_gathered(state, config_, small_camera());
     }
   }
   Slam& slam() { return slam_; }
@@ -52,6 +59,7 @@ class Walk {
   }
 
  private:
+  Config config_;
   WallScene scene_;
   Slam slam_;
 };
@@ -101,8 +109,8 @@ TEST(Atlas, WithoutAWayBackTheMapMostWasMadeOfIsGivenOut) {
   walk.walk(0, 240);
   walk.cover();
   walk.walk(680, 592);
-  const AtlasState during = walk.slam().atlas_state();
-  ASSERT_EQ(during.maps.size(), 2U);
+  ASSERT_EQ(walk.slam().atlas_state().maps.size(), 2U);
+  walk.expect_followers_fit();
   walk.finish();
   const RunStatistics s = walk.slam().statistics();
   EXPECT_EQ(s.maps, 2);
@@ -181,7 +189,10 @@ TEST(Atlas, AThreadedRunWithANewMapAndAJoinReplaysExactly) {
         });
         for (const KeyframeId id : state.places()->keyframes())
           if (!state.map->keyframes().contains(id)) consistent = false;
+        for (const auto& follower : state.followers.all())
+          if (follower->wrong_with(*state.map)) consistent = false;
       }
+      std::this_thread::sleep_for(std::chrono::milliseconds(3));
     }
   });
   leave_and_come_back(recorded);

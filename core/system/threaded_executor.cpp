@@ -2,6 +2,7 @@
 #include <chrono>
 #include <deque>
 #include <exception>
+#include <mutex>
 #include <new>
 #include <thread>
 
@@ -65,7 +66,10 @@ class ThreadedExecutor : public Executor {
   }
 
   SnapshotCell::Content content() const override { return cell_.take(); }
-  Followers followers() const override { return owner_.followers(); }
+  std::vector<MapState> maps() const override {
+    const std::lock_guard lock(owner_mutex_);
+    return owner_.maps();
+  }
   std::int64_t backlog() const override { return tracking_.requested() - cell_.take().inserted; }
   double waited_s() const override { return waited_s_; }
   std::vector<const SpanRecorder*> spans() const override {
@@ -90,17 +94,14 @@ class ThreadedExecutor : public Executor {
 
   void work() {
     give_way(5);
-    const auto stopped = [this] { return stopped_.load(); };
     try {
       while (const auto work = requests_.pop()) {
         if (stopped_) break;
-        if (work->labels && owner_.label(work->frame, *work->labels)) owner_.interpret_planes();
-        if (work->markers) owner_.mark(work->frame, *work->markers);
-        if (work->request) owner_.work_on(*work->request, [this] { return cut_short(); }, stopped);
-        adjust_beside();
+        do_work(*work);
       }
       adjust_to_the_end();
-      owner_.end_run(stopped);
+      const std::lock_guard lock(owner_mutex_);
+      owner_.end_run([this] { return stopped_.load(); });
     } catch (const std::bad_alloc&) {
       failure_ = std::current_exception();  // says what it is
       requests_.close();
@@ -113,6 +114,16 @@ class ThreadedExecutor : public Executor {
     cell_.close();
   }
 
+  void do_work(const Work& work) {
+    const std::lock_guard lock(owner_mutex_);
+    if (work.labels && owner_.label(work.frame, *work.labels)) owner_.interpret_planes();
+    if (work.markers) owner_.mark(work.frame, *work.markers);
+    if (work.request)
+      owner_.work_on(*work.request, [this] { return cut_short(); }, [this] { return stopped_.load(); });
+    adjust_beside();
+  }
+
+  // With the owner's mutex held.
   void adjust_beside() {
     bool finished = false;
     if (const auto wanted = owner_.adjustment())
@@ -124,6 +135,7 @@ class ThreadedExecutor : public Executor {
   void adjust_to_the_end() {
     while (owner_.adjustment() && !stopped_) {
       background_.wait();
+      const std::lock_guard lock(owner_mutex_);
       adjust_beside();
     }
   }
@@ -158,6 +170,7 @@ class ThreadedExecutor : public Executor {
   SystemOptions options_;
   SnapshotCell cell_;
   TrackingLane tracking_;
+  mutable std::mutex owner_mutex_;  // held by the worker for one piece of work at a time, and by maps()
   MapOwner owner_;
   BoundedQueue<Work> requests_;
   BackgroundAdjustment background_;
