@@ -46,9 +46,13 @@ MapEdit SceneBuilder::interpret(KeyframeId keyframe, const Snapshot& snapshot, c
   for (const PlaneMerge& m : find_merges(draft.map(), surfaces, touched, options_.association))
     draft.record(MergePlane{m.gone, m.kept});
   if (!draft.map().up_in_world()) return draft.take();
-  const std::vector<PlaneId> candidates = around(surfaces.changed(), surfaces, draft.map());
-  classify(candidates, surfaces, draft);
-  pair_faces(candidates, surfaces, draft);
+  // A level surface says something of others by what it is, and nothing more by growing: the ground lies beside all walls.
+  const auto [level, upright] = by_stance(surfaces.changed(), draft.map());
+  std::set<PlaneId> telling = classify(level, surfaces, draft);
+  telling.insert(upright.begin(), upright.end());
+  const std::vector<PlaneId> others = around(telling, surfaces, draft.map());
+  classify(others, surfaces, draft);
+  pair_faces(others, surfaces, draft);
   if (draft.map().keyframes().contains(keyframe)) remove_hidden_landmarks(keyframe, surfaces, draft);
   return draft.take();
 }
@@ -74,6 +78,17 @@ void SceneBuilder::find_up_direction(const SurfaceKeeper& surfaces, Draft& draft
   });
   const auto up = find_up(std::move(found), image_up);
   if (up && (!map.up_in_world() || up->cross(*map.up_in_world()).norm() > 1e-3)) draft.record(SetUp{*up});
+}
+
+SceneBuilder::Stances SceneBuilder::by_stance(const std::set<PlaneId>& planes, const Map& map) {
+  Stances stances;
+  for (const PlaneId id : planes) {
+    const MappedPlane* plane = map.planes().find(id);
+    if (!plane) continue;
+    const bool level = std::abs(plane->plane.normal.dot(*map.up_in_world())) > 0.5;
+    (level ? stances.level : stances.upright).push_back(id);
+  }
+  return stances;
 }
 
 // What is known of a plane says something of those beside it, too: what hangs on a wall, and whether it stands on the ground.
@@ -158,23 +173,20 @@ SurfaceRole SceneBuilder::judge(const Map& map, const SurfaceKeeper& surfaces, P
   return role;
 }
 
-void SceneBuilder::classify(const std::vector<PlaneId>& candidates, const SurfaceKeeper& surfaces,
-                            Draft& draft) const {
-  const Eigen::Vector3d up = *draft.map().up_in_world();
-  // Level surfaces first: walls are measured from the ground.
-  std::vector<PlaneId> order = candidates;
-  std::stable_partition(order.begin(), order.end(), [&](PlaneId id) {
-    return std::abs(draft.map().planes().find(id)->plane.normal.dot(up)) > 0.5;
-  });
-  for (const PlaneId id : order) {
-    const KnownSurface& known = *surfaces.find(id);
+std::set<PlaneId> SceneBuilder::classify(const std::vector<PlaneId>& planes, const SurfaceKeeper& surfaces,
+                                         Draft& draft) const {
+  std::set<PlaneId> changed;
+  for (const PlaneId id : planes) {
+    const KnownSurface* known = surfaces.find(id);
     // Nobody alive sees a plane that was loaded: it stays what it was.
-    if (known.evidence().unseen()) continue;
-    RoleVotes votes = known.votes();
+    if (!known || known->evidence().unseen()) continue;
+    RoleVotes votes = known->votes();
     const SurfaceRole role = judge(draft.map(), surfaces, id, votes);
     const MappedPlane& plane = *draft.map().planes().find(id);
+    if (role != plane.role) changed.insert(id);
     if (role != plane.role || votes != plane.votes) draft.record(ClassifyPlane{id, role, votes});
   }
+  return changed;
 }
 
 void SceneBuilder::pair_faces(const std::vector<PlaneId>& candidates, const SurfaceKeeper& surfaces,

@@ -57,7 +57,13 @@ class SceneBuilder {
   void find_up_direction(const SurfaceKeeper& surfaces, Draft& draft) const;
   static std::vector<PlaneId> around(const std::set<PlaneId>& changed, const SurfaceKeeper& surfaces,
                                      const Map& map);
-  void classify(const std::vector<PlaneId>& candidates, const SurfaceKeeper& surfaces, Draft& draft) const;
+  struct Stances {
+    std::vector<PlaneId> level, upright;
+  };
+  static Stances by_stance(const std::set<PlaneId>& planes, const Map& map);
+  // Says which are something else now.
+  std::set<PlaneId> classify(const std::vector<PlaneId>& planes, const SurfaceKeeper& surfaces,
+                             Draft& draft) const;
   SurfaceRole judge(const Map& map, const SurfaceKeeper& surfaces, PlaneId id, RoleVotes& votes) const;
   bool another_is_the_wall(const Map& map, const SurfaceKeeper& surfaces, PlaneId id) const;
   static SurfaceFacts facts_of(const Map& map, const MappedPlane& plane, const KnownSurface& known,
