@@ -11,7 +11,7 @@
 #include "build_info.h"
 #include "core/base/atomic_file.h"
 #include "core/base/check.h"
-#include "core/system/atlas_file.h"
+#include "core/system/maps/atlas_file.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -1,4 +1,4 @@
-#include "core/system/config.h"
+#include "core/system/config/config.h"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>

@@ -3,8 +3,8 @@
 
 #include <nanobind/ndarray.h>
 
-#include "core/stages/messages.h"
-#include "core/system/segmentation.h"
+#include "core/matching/messages.h"
+#include "core/system/run/segmentation.h"
 
 namespace vsgraphs {
 

@@ -5,7 +5,7 @@
 #include <nanobind/ndarray.h>
 
 #include "core/map/map.h"
-#include "core/system/markers.h"
+#include "core/system/maps/markers.h"
 
 namespace vsgraphs {
 

@@ -6,7 +6,7 @@
 #include "bindings/bind.h"
 #include "build_info.h"
 #include "core/base/check.h"
-#include "core/system/version.h"
+#include "core/system/config/version.h"
 
 NB_MODULE(_core, m) {
   m.doc() = "The compiled core of vsgraphs. Use it through the package `vsgraphs`.";

@@ -1,4 +1,4 @@
-#include "core/system/slam.h"
+#include "core/system/run/slam.h"
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>

@@ -1,6 +1,6 @@
 # vsgraphs_layer(NAME [LIBRARIES lib...] BELOW layer...)
 # One folder of core/ is one target. Sources are core/NAME/**/*.cpp; *_test.cpp files
-# become the test program NAME_test. BELOW lists the layers it may include.
+# become the test program NAME_test (a slash of the name becomes _). BELOW lists the layers it may include.
 function(vsgraphs_layer NAME)
   cmake_parse_arguments(LAYER "" "" "LIBRARIES;BELOW;TEST_LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
@@ -8,7 +8,8 @@ function(vsgraphs_layer NAME)
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
 
-  set(target vsgraphs_${NAME})
+  string(REPLACE "/" "_" name ${NAME})
+  set(target vsgraphs_${name})
   if(sources)
     add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
@@ -19,6 +20,7 @@ function(vsgraphs_layer NAME)
   endif()
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/vsgraphs>)
+  list(TRANSFORM LAYER_BELOW REPLACE "/" "_")
   list(TRANSFORM LAYER_BELOW PREPEND vsgraphs_)
   target_link_libraries(${target} ${scope} vsgraphs_abi ${LAYER_BELOW} ${LAYER_LIBRARIES})
   install(TARGETS ${target} EXPORT vsgraphs_targets COMPONENT development
@@ -27,9 +29,9 @@ function(vsgraphs_layer NAME)
   if(VSGRAPHS_BUILD_TESTS AND tests)
     find_package(GTest REQUIRED)
     include(GoogleTest)
-    add_executable(${NAME}_test ${tests})
-    target_link_libraries(${NAME}_test PRIVATE
+    add_executable(${name}_test ${tests})
+    target_link_libraries(${name}_test PRIVATE
       ${target} vsgraphs_options GTest::gmock GTest::gtest_main ${LAYER_TEST_LIBRARIES})
-    gtest_discover_tests(${NAME}_test DISCOVERY_TIMEOUT 60)
+    gtest_discover_tests(${name}_test DISCOVERY_TIMEOUT 60)
   endif()
 endfunction()

@@ -2,9 +2,9 @@
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/vsgraphs)
 
-# One name for all of it; headers keep their paths: #include "core/system/slam.h".
+# One name for all of it; headers keep their paths: #include "core/system/run/slam.h".
 add_library(vsgraphs INTERFACE)
-target_link_libraries(vsgraphs INTERFACE vsgraphs_system vsgraphs_simulate)
+target_link_libraries(vsgraphs INTERFACE vsgraphs_system_run vsgraphs_simulate)
 install(TARGETS vsgraphs vsgraphs_abi EXPORT vsgraphs_targets COMPONENT development)
 install(EXPORT vsgraphs_targets NAMESPACE vsgraphs:: FILE vsgraphs-targets.cmake
         DESTINATION ${package} COMPONENT development)

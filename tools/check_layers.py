@@ -108,7 +108,19 @@ def read_layers(cmake: str) -> dict[str, Layer]:
                 lists.setdefault(keyword, []).append(word)
         tests = [word.removeprefix("vsgraphs_") for word in lists.get("TEST_LIBRARIES", [])]
         layers[name] = Layer(frozenset(lists.get("BELOW", [])), frozenset(tests))
-    return layers
+    # A target is named after its folder, with _ for /.
+    folders = {name.replace("/", "_"): name for name in layers}
+    return {
+        name: Layer(layer.below, frozenset(folders.get(test, test) for test in layer.for_tests))
+        for name, layer in layers.items()
+    }
+
+
+def folder_of(path: str, layers: dict[str, Layer]) -> str:
+    """Names the layer that a path below core/ lies in; the first folder of the path if it lies in none."""
+    first, _, rest = path.partition("/")
+    room = f"{first}/{rest.partition('/')[0]}"
+    return room if room in layers else first
 
 
 def cycle(layers: dict[str, Layer]) -> str | None:
@@ -144,14 +156,17 @@ def without_noise(text: str) -> str:
     return _CODE_OR_NOISE.sub(blank, text)
 
 
-def _include_problems(folder: str, layer: Layer, included: str, *, is_test: bool) -> Iterator[str]:
+def _include_problems(
+    folder: str, layers: dict[str, Layer], included: str, *, is_test: bool
+) -> Iterator[str]:
+    layer = layers[folder]
     top, _, rest = included.partition("/")
     if top != "core":
         for rule in INCLUDE_RULES:
-            if rule.forbids(included, folder, is_test=is_test):
+            if rule.forbids(included, folder.partition("/")[0], is_test=is_test):
                 yield f"includes <{included}>: {rule.reason}"
         return
-    target = rest.partition("/")[0]
+    target = folder_of(rest, layers)
     allowed = layer.below | {folder} | (layer.for_tests if is_test else frozenset())
     if target not in allowed:
         yield f"core/{folder} includes {included}, but may include only {', '.join(sorted(allowed))}"
@@ -163,10 +178,14 @@ def check_cpp(root: Path) -> list[str]:
     problems = []
     if (culprit := cycle(layers)) is not None:
         problems.append(f"core/CMakeLists.txt: {culprit} stands below itself")
+    holding = {
+        folder_of(str(path.relative_to(root / "core")), layers)
+        for path in root.glob("core/**/*")
+        if path.suffix in {".h", ".cpp"} and path.parent != root / "core"
+    }
     problems += [
-        f"core/{entry.name}: not declared with vsgraphs_layer() in core/CMakeLists.txt"
-        for entry in sorted((root / "core").iterdir())
-        if entry.is_dir() and entry.name not in layers
+        f"core/{folder}: not declared with vsgraphs_layer() in core/CMakeLists.txt"
+        for folder in sorted(holding - set(layers))
     ]
     for path in sorted(root.glob("core/*/**/*")) + sorted(root.glob("bindings/**/*")):
         if path.suffix not in {".h", ".cpp"}:
@@ -180,8 +199,9 @@ def check_cpp(root: Path) -> list[str]:
 
 
 def _line_problems(layers: dict[str, Layer], name: Path, line: str) -> Iterator[str]:
-    is_test = name.stem.endswith("_test")
+    is_test = name.stem.endswith("_test") or name.stem.startswith("test_")
     in_core = name.parts[0] == "core"
+    folder = folder_of("/".join(name.parts[1:]), layers)
     include = re.match(r'\s*#\s*include\s*(["<])([^">]+)[">]', line)
     if include:
         quote, included = include.groups()
@@ -192,8 +212,8 @@ def _line_problems(layers: dict[str, Layer], name: Path, line: str) -> Iterator[
                 yield f"includes <{included}>: the project does without OpenCV"
         elif included.startswith("bindings/"):
             yield f"includes {included}: the core knows nothing of Python"
-        elif name.parts[1] in layers:
-            yield from _include_problems(name.parts[1], layers[name.parts[1]], included, is_test=is_test)
+        elif folder in layers:
+            yield from _include_problems(folder, layers, included, is_test=is_test)
     elif in_core:
         for rule in WORD_RULES:
             if rule.forbids(line, name.parts[1], is_test=is_test):

@@ -115,7 +115,7 @@ def test_forbids(project: Path, path: str, text: str) -> None:
         ("core/map/a.cpp", "void f(char* b) { std::snprintf(b, 3, x); int new_id = 2; }"),
         (
             "bindings/a.cpp",
-            '#include "core/system/slam.h"\n#include "bindings/b.h"\n#include <nanobind/nanobind.h>',
+            '#include "core/system/run/slam.h"\n#include "bindings/b.h"\n#include <nanobind/nanobind.h>',
         ),
     ],
 )

@@ -59,6 +59,8 @@ class Map {
   // The room a point of the world is in; no_room outside all that were found.
   RoomNumber room_at(const Eigen::Vector3d& point_in_world) const;
 
+  // The patches of a keyframe, living or retired; null if it has none.
+  const std::shared_ptr<const KeyframeSurfaces>& patches_of(KeyframeId id) const;
   // The patch behind an observation, whether its keyframe lives or is retired; nullptr if there is none.
   const SurfacePatch* patch(const PlaneObservation& observation) const;
 

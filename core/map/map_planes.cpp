@@ -11,13 +11,15 @@ const char* to_string(SurfaceRole role) {
   return names[static_cast<std::size_t>(role)];
 }
 
+const std::shared_ptr<const KeyframeSurfaces>& Map::patches_of(KeyframeId id) const {
+  static const std::shared_ptr<const KeyframeSurfaces> none;
+  const Keyframe* living = keyframes_.find(id);
+  const RetiredKeyframe* retired = retired_.find(id);
+  return living ? living->patches : retired ? retired->patches : none;
+}
+
 const SurfacePatch* Map::patch(const PlaneObservation& observation) const {
-  const KeyframeSurfaces* surfaces = nullptr;
-  if (const Keyframe* keyframe = keyframes_.find(observation.keyframe)) {
-    surfaces = keyframe->patches.get();
-  } else if (const RetiredKeyframe* retired = retired_.find(observation.keyframe)) {
-    surfaces = retired->patches.get();
-  }
+  const KeyframeSurfaces* surfaces = patches_of(observation.keyframe).get();
   return surfaces && observation.patch < surfaces->patches.size() ? &surfaces->patches[observation.patch]
                                                                   : nullptr;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t most_frames = std::int64_t{1} << 53;
 constexpr int most_levels = 16;       // of an image pyramid
-constexpr double most_room_m2 = 1e6;  // with all around it; a storey is less (core/scene/level_map.cpp)
+constexpr double most_room_m2 = 1e6;  // with all around it; a storey is less (core/scene/rooms/level_map.cpp)
 // A point that two views saw nearly alike may be anywhere along its rays.
 constexpr double most_landmark_m = 1e8;
 
@@ -53,7 +53,7 @@ bool is_sane(const Landmark& landmark) {
          look.reference_level < most_levels && is_frame(landmark.created_at_frame);
 }
 
-// As large and as far off as a detector may say (core/system/markers.h).
+// As large and as far off as a detector may say (core/system/maps/markers.h).
 bool is_sane(const MappedMarker& marker) {
   return marker.size_m > 0 && std::isfinite(marker.size_m) && is_pose(marker.world_from_marker) &&
          std::all_of(marker.observations.begin(), marker.observations.end(), [](const MarkerObservation& o) {

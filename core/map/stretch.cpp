@@ -6,13 +6,6 @@ namespace vsgraphs {
 
 namespace {
 
-KeyframeId newest_keyframe(const Map& map) {
-  for (std::uint32_t index = map.keyframes().index_bound(); index-- > 0;) {
-    if (const KeyframeId id = map.keyframes().at_index(index); id.valid()) return id;
-  }
-  return {};
-}
-
 // From its first living keyframe through the others to `end`.
 double way_of(const Map& map, KeyframeId stretch, const Se3& end) {
   std::optional<Eigen::Vector3d> last;
@@ -79,7 +72,7 @@ std::optional<Se3> world_from_stretch(const Map& map, KeyframeId stretch) {
 KeyframeId stretch_going_on(const Map& map, const Se3& world_from_camera,
                             std::span<const LandmarkId> landmarks, const std::optional<TrackedLink>& link,
                             double max_way_m) {
-  const KeyframeId newest = newest_keyframe(map);
+  const KeyframeId newest = map.keyframes().last();
   if (!newest.valid()) return {};
   const KeyframeId stretch = map.stretch_of(newest);
   if (!tied(map, stretch, landmarks, link)) return {};

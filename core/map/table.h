@@ -57,6 +57,18 @@ class Table {
     return slot && slot->alive ? IdType{index, slot->generation} : IdType{};
   }
 
+  // The living ones of the lowest and the highest index; invalid where none lives.
+  IdType first() const {
+    for (std::uint32_t index = 0; index < slots_; ++index)
+      if (const IdType id = at_index(index); id.valid()) return id;
+    return {};
+  }
+  IdType last() const {
+    for (std::uint32_t index = slots_; index-- > 0;)
+      if (const IdType id = at_index(index); id.valid()) return id;
+    return {};
+  }
+
   // Follows what a removed id was merged into; an invalid id where it vanished for good. The trail is kept until
   // the slot is used again, which the first-in-first-out free list delays for as long as it can.
   IdType resolve(IdType id) const {

@@ -26,6 +26,20 @@ TEST(Table, FindsWhatWasInserted) {
   EXPECT_EQ(table.find(NumberId{}), nullptr);
 }
 
+TEST(Table, KnowsItsFirstAndItsLast) {
+  Numbers table;
+  EXPECT_FALSE(table.first().valid());
+  EXPECT_FALSE(table.last().valid());
+  table.start_at(20);
+  const NumberId a = add(table, 1), b = add(table, 2), c = add(table, 3);
+  EXPECT_EQ(table.first(), a);
+  EXPECT_EQ(table.last(), c);
+  table.erase(a, b);
+  table.erase(c, b);
+  EXPECT_EQ(table.first(), b);
+  EXPECT_EQ(table.last(), b);
+}
+
 TEST(Table, StartsAtAnIndexAndKnowsNothingBelow) {
   Numbers table;
   table.start_at(1000003);

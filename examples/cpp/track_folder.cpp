@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "core/system/slam.h"
-#include "core/system/version.h"
+#include "core/system/config/version.h"
+#include "core/system/run/slam.h"
 #include "png_image.h"
 #include "tum_folder.h"
 

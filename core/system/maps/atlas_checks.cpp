@@ -1,0 +1,87 @@
+#include "core/system/maps/atlas_checks.h"
+
+#include <algorithm>
+
+namespace vsgraphs {
+
+namespace {
+
+// One name, one thing: of a table's indices none is in use in two maps. Nor do they run far ahead of what is in use: arrays are
+// as long as they say.
+class Taken {
+ public:
+  template <typename Table>
+  bool take(const Table& table) {
+    constexpr std::uint64_t most_ahead = 1U << 22;
+    std::uint64_t end = 0;
+    bool fresh = true;
+    for (std::uint32_t index = 0; index < table.index_bound(); ++index) {
+      if (!table.at_index(index).valid()) continue;
+      end = index + std::uint64_t{1};
+      if (taken_.size() < end) taken_.resize(end);
+      fresh = fresh && !taken_[index];
+      taken_[index] = true;
+    }
+    return fresh && table.index_bound() <= end + most_ahead;
+  }
+
+ private:
+  std::vector<bool> taken_;
+};
+
+bool share_ids(const AtlasState& state) {
+  Taken keyframes, landmarks, planes;
+  return !std::all_of(state.maps.begin(), state.maps.end(), [&](const MapState& one) {
+    const bool alone = keyframes.take(one.map->retired_keyframes());
+    return landmarks.take(one.map->landmarks()) && planes.take(one.map->planes()) && alone;
+  });
+}
+
+// UTF-8 (RFC 3629), as whoever prints it expects; overlong forms pass.
+bool is_text(const std::string& text) {
+  int to_come = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool goes_on = (byte & 0xc0) == 0x80;
+    if (goes_on != (to_come > 0)) return false;
+    if (goes_on)
+      --to_come;
+    else
+      to_come = byte < 0x80 ? 0 : byte < 0xe0 ? 1 : byte < 0xf0 ? 2 : byte < 0xf8 ? 3 : -1;
+    if (to_come < 0) return false;
+  }
+  return to_come == 0;
+}
+
+Wrong wrong_with(const MapState& state) {
+  if (state.map->keyframes().index_bound() > PlaceSegment::most_keyframes)
+    return "it numbers more keyframes than there can be";
+  for (const auto& follower : state.followers.all())
+    if (Wrong wrong = follower->wrong_with(*state.map)) return wrong;
+  return nullptr;
+}
+
+}  // namespace
+
+Wrong wrong_with_maps(const AtlasState& state) {
+  for (const MapState& one : state.maps) {
+    if (Wrong wrong = wrong_with_references(*one.map)) return wrong;
+    if (Wrong wrong = wrong_with_values(*one.map)) return wrong;
+  }
+  return nullptr;
+}
+
+Wrong wrong_with_atlas(const SavedAtlas& atlas) {
+  if (!atlas.map_names.empty() && atlas.map_names.size() != atlas.state.maps.size())
+    return "maps and names differ in number";
+  if (!is_text(atlas.program) || !is_text(atlas.commit) || !is_text(atlas.configuration) ||
+      !std::all_of(atlas.map_names.begin(), atlas.map_names.end(), is_text))
+    return "a text that is none";
+  for (const MapState& state : atlas.state.maps) {
+    if (Wrong wrong = wrong_with(state)) return wrong;
+  }
+  if (share_ids(atlas.state)) return "ids that are not its maps' own";
+  return nullptr;
+}
+
+}  // namespace vsgraphs

@@ -1,9 +1,0 @@
-#include "core/system/version.h"
-
-namespace vsgraphs {
-
-const char* version() { return VSGRAPHS_VERSION; }
-
-const char* processor_level() { return VSGRAPHS_LEVEL; }
-
-}  // namespace vsgraphs
