@@ -129,9 +129,23 @@ nb::dict place_of(const Place& place, std::size_t i, const Se3& world_from_level
   return d;
 }
 
+nb::dict element_of(const FoundElement& element, const Se3& world_from_level) {
+  nb::list rooms;
+  for (const RoomNumber room : element.rooms) rooms.append(room);
+  nb::dict d;
+  d["id"] = element.number;
+  d["kind"] = element.kind;
+  d["centre"] = vector_of(world_from_level * element.centre);
+  d["along"] = vector_of(world_from_level.rotation() * element.along);
+  d["size_m"] = vector_of(element.size_m);
+  d["planes"] = indices_of(element.planes);
+  d["rooms"] = rooms;
+  return d;
+}
+
 void add_structure(const FoundStructure& structure, nb::dict& graph) {
   const Se3 world_from_level = structure.level_from_world.inverse();
-  nb::list rooms, floors, doors, places;
+  nb::list rooms, floors, doors, places, elements;
   for (std::size_t i = 0; i < structure.rooms.size(); ++i)
     rooms.append(room_of(structure, i, world_from_level));
   for (std::size_t i = 0; i < structure.floors.size(); ++i)
@@ -140,10 +154,13 @@ void add_structure(const FoundStructure& structure, nb::dict& graph) {
     doors.append(door_of(structure.doors[i], i, world_from_level));
   for (std::size_t i = 0; i < structure.places.size(); ++i)
     places.append(place_of(structure.places[i], i, world_from_level));
+  for (const FoundElement& element : structure.elements)
+    elements.append(element_of(element, world_from_level));
   graph["rooms"] = rooms;
   graph["floors"] = floors;
   graph["doors"] = doors;
   graph["places"] = places;
+  graph["elements"] = elements;
 }
 
 }  // namespace

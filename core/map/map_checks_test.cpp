@@ -143,6 +143,12 @@ TEST_F(MapChecks, RoomsDoorsFloorsAndPlacesNameWhatIsThere) {
   EXPECT_EQ(after_structure([](auto& s) { s.floors[0].rooms = {5}; }),
             "a floor with a room that does not exist");
   EXPECT_EQ(after_structure([](auto& s) { s.floors[0].grounds = {{99, 0}}; }), "a floor without its ground");
+  EXPECT_EQ(after_structure([](auto& s) { s.elements[0].planes = {{99, 0}}; }),
+            "an element without its planes");
+  EXPECT_EQ(after_structure([](auto& s) { s.elements[0].rooms = {5}; }),
+            "an element in a room that does not exist");
+  EXPECT_EQ(after_structure([](auto& s) { s.elements[0].number = 3; }),
+            "an element's number that was not given to it");
   const std::string place = "a place beside one, or in a room, that does not exist";
   EXPECT_EQ(after_structure([](auto& s) { s.places[0].room = 5; }), place);
   EXPECT_EQ(after_structure([](auto& s) { s.places[0].neighbours = {2}; }), place);
@@ -159,6 +165,7 @@ TEST_F(MapChecks, NumbersAreSomewhere) {
     EXPECT_EQ(after_structure([&](auto& s) { s.rooms[0].polygon[1].x() = odd; }), "a room of no shape");
     EXPECT_EQ(after_structure([&](auto& s) { s.doors[0].position.x() = odd; }), "a door of no size");
     EXPECT_EQ(after_structure([&](auto& s) { s.places[0].position.x() = odd; }), "a place that is nowhere");
+    EXPECT_EQ(after_structure([&](auto& s) { s.elements[0].size_m.x() = odd; }), "an element of no size");
     EXPECT_EQ(after_structure([&](auto& s) { s.room_nodes[0].x() = odd; }),
               "rooms or floors that are nowhere");
   }

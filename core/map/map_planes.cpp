@@ -136,7 +136,9 @@ bool uses(const FoundStructure& structure, PlaneId id) {
   return std::any_of(structure.rooms.begin(), structure.rooms.end(),
                      [&](const FoundRoom& r) { return has(r.walls) || r.ground == id || r.ceiling == id; }) ||
          std::any_of(structure.floors.begin(), structure.floors.end(),
-                     [&](const FoundFloor& f) { return has(f.grounds); });
+                     [&](const FoundFloor& f) { return has(f.grounds); }) ||
+         std::any_of(structure.elements.begin(), structure.elements.end(),
+                     [&](const FoundElement& e) { return has(e.planes); });
 }
 
 void relink(std::vector<PlaneId>& ids, PlaneId gone, PlaneId into) {
@@ -157,6 +159,7 @@ void Map::relink_structure(PlaneId gone, PlaneId into) {
     if (room.ceiling == gone) room.ceiling = into;
   }
   for (FoundFloor& floor : changed.floors) relink(floor.grounds, gone, into);
+  for (FoundElement& element : changed.elements) relink(element.planes, gone, into);
   structure_ = std::make_shared<const FoundStructure>(std::move(changed));
 }
 

@@ -113,6 +113,10 @@ Wrong wrong_with_surfaces_of(const FoundStructure& structure, const Map& map) {
   for (const FoundFloor& floor : structure.floors) {
     if (std::any_of(floor.grounds.begin(), floor.grounds.end(), missing)) return "a floor without its ground";
   }
+  for (const FoundElement& element : structure.elements) {
+    if (std::any_of(element.planes.begin(), element.planes.end(), missing))
+      return "an element without its planes";
+  }
   return nullptr;
 }
 
@@ -137,6 +141,13 @@ Wrong wrong_with_rooms(const FoundStructure& structure) {
   for (const FoundFloor& floor : structure.floors) {
     if (std::any_of(floor.rooms.begin(), floor.rooms.end(), unknown))
       return "a floor with a room that does not exist";
+  }
+  std::set<ElementNumber> elements;
+  for (const FoundElement& element : structure.elements) {
+    if (element.number >= structure.next_element || !elements.insert(element.number).second)
+      return "an element's number that was not given to it";
+    if (std::any_of(element.rooms.begin(), element.rooms.end(), unknown))
+      return "an element in a room that does not exist";
   }
   for (const Place& place : structure.places) {
     const auto behind_the_end = [&](std::uint32_t next) { return next >= structure.places.size(); };

@@ -94,6 +94,12 @@ bool is_sane(const Place& place) {
   return within(place.position, most_metres) && within(place.clearance_m, most_metres);
 }
 
+bool is_sane(const FoundElement& element) {
+  constexpr std::size_t longest_kind = 64;
+  return !element.kind.empty() && element.kind.size() <= longest_kind &&
+         within(element.centre, most_metres) && is_unit(element.along) && within(element.size_m, most_metres);
+}
+
 template <typename Values>
 bool all_sane(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](const auto& value) { return is_sane(value); });
@@ -108,6 +114,7 @@ Wrong wrong_with_structure(const FoundStructure& structure) {
   if (!all_sane(structure.rooms)) return "a room of no shape";
   if (!all_sane(structure.doors)) return "a door of no size";
   if (!all_sane(structure.floors)) return "a floor of no shape";
+  if (!all_sane(structure.elements)) return "an element of no size";
   return all_sane(structure.places) ? nullptr : "a place that is nowhere";
 }
 

@@ -56,6 +56,14 @@ inline FoundStructure some_structure(PlaneId wall, PlaneId ground) {
   structure.floors = {floor};
   structure.places = {{{1, 1, 0}, 0.6, 4, {1}}, {{2, 1, 0}, 0.5, no_room, {0}}};
   structure.next_number = 8;
+  FoundElement element;
+  element.kind = "shelf";
+  element.number = 2;
+  element.size_m = {1, 0.1, 2};
+  element.planes = {wall};
+  element.rooms = {4};
+  structure.elements = {element};
+  structure.next_element = 3;
   structure.level_from_world = Se3::exp((Vector6d() << 1, 2, 3, 0.1, 0.2, 0.3).finished());
   structure.room_nodes = {{1, 1, 1}, {4, 1, 1}};
   structure.floor_nodes = {{1, 1, 0}};

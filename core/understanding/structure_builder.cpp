@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/map/levelling.h"
+#include "core/understanding/element_kind.h"
 
 namespace vsgraphs {
 namespace {
@@ -69,6 +70,9 @@ MapEdit StructureBuilder::propose(const Snapshot& snapshot, const SpaceKeeper& s
   found->sought = true;
   found->level_from_world = level_from_world;
   place_nodes(map, surfaces, *found);
+  found->next_element = map.structure().next_element;
+  found->elements =
+      find_elements(element_kinds(), {map, surfaces, *found}, map.structure().elements, found->next_element);
   draft.record(SetStructure{std::move(found)});
   return draft.take();
 }

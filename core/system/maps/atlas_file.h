@@ -15,7 +15,7 @@
 
 namespace vsgraphs {
 
-inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 3, "atlas"};
+inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 4, "atlas"};
 
 struct SavedAtlas {
   AtlasState state;

@@ -1,0 +1,8 @@
+// The kinds of elements there are; a line each.
+#include "core/understanding/element_kind.h"
+
+namespace vsgraphs {
+
+std::span<const ElementKind> element_kinds() { return {}; }
+
+}  // namespace vsgraphs
