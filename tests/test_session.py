@@ -8,11 +8,11 @@ import pytest
 from fake_core import Slam
 from layouts import write_tum
 
-from vsgraphs.cli.pacing import Realtime
-from vsgraphs.cli.session import Session, Tally
 from vsgraphs.datasets import open_sequence
 from vsgraphs.datasets.prefetch import LoadedFrame, Prefetcher
 from vsgraphs.errors import FrameError
+from vsgraphs.run.pacing import Realtime
+from vsgraphs.run.session import Session, Tally
 
 
 class Lines:

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from fake_core import Config
 
-from vsgraphs.cli.settings import apply_assignments, apply_file, apply_shortcuts
 from vsgraphs.errors import InputError
 from vsgraphs.reading import plain_value
+from vsgraphs.run.settings import apply_assignments, apply_file, apply_shortcuts
 
 
 def written(tmp_path: Path, text: str) -> Path:

@@ -16,12 +16,12 @@ import pytest
 from conftest import Program, report
 from fake_core import Slam
 
-from vsgraphs.cli.session import Session, Tally
 from vsgraphs.datasets import open_sequence, prefetch
 from vsgraphs.datasets.decode import image_size, load_depth, load_rgb
 from vsgraphs.datasets.prefetch import MOST_STUCK, Prefetcher
 from vsgraphs.errors import FrameError, InputError, RunError, StalledError
 from vsgraphs.reading import open_regular
+from vsgraphs.run.session import Session, Tally
 from vsgraphs.segment.label_folder import _load as load_labels
 
 

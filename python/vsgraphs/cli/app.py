@@ -103,7 +103,8 @@ def view(
 ) -> None:
     """Open a finished run: map, walls, rooms and the graph above them."""
     with told():
-        from vsgraphs.cli.viewing import Showing, view_run
+        from vsgraphs.cli.viewing import view_run
+        from vsgraphs.run import Showing
 
         view_run(run, Showing(record is None, record, view_port, web, view_address))
 

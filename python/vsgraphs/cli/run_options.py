@@ -133,39 +133,34 @@ def run(
     ] = 1,
 ) -> None:
     """Track a camera through a recorded sequence: trajectory, map, scene graph, floor plan."""
-    from vsgraphs.cli.output import results_folder
+    with told():
+        from vsgraphs.cli.run import run_sequence
+        from vsgraphs.run import RunRequest, Showing
 
-    with told(), results_folder(out, source) as folder:
-        from vsgraphs.cli.run import RunRequest, run_sequence
-        from vsgraphs.cli.viewing import Showing
-
-        shortcuts = {
-            "system.mode": mode,
-            "system.execution": execution,
-            "system.realtime": realtime or None,
-            "system.seed": seed,
-            "system.schedule_out": None if schedule_out is None else str(schedule_out),
-            "system.replay": None if replay is None else str(replay),
-            "system.localise_only": localise_only or None,
-        }
         request = RunRequest(
-            source=source,
-            out=folder,
+            source,
+            out,
             camera=camera,
+            mode=mode,
+            execution=execution,
+            realtime=realtime or None,
             max_frames=max_frames,
+            config=config,
+            options=list(set_ or []),
+            seed=seed,
             segmenter=segmenter,
-            map_colours=map_colours,
             markers=markers,
-            config_file=config,
-            assignments=list(set_ or []),
+            map_colours=map_colours,
+            schedule_out=schedule_out,
+            replay=replay,
+            showing=Showing(view, record, view_port, web, view_address),
             save_atlas=save_atlas,
             load_atlas=load_atlas,
+            localise_only=localise_only,
             autosave_s=autosave,
             frame_timeout_s=frame_timeout,
             overwrite=overwrite,
             keep=keep,
-            shortcuts={key: value for key, value in shortcuts.items() if value is not None},
-            showing=Showing(view, record, view_port, web, view_address),
         )
         code = run_sequence(request)
     raise typer.Exit(code)

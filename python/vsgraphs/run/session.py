@@ -6,28 +6,17 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from vsgraphs.cli.pacing import AsFastAsPossible, Pacing
 from vsgraphs.errors import StalledError
+from vsgraphs.run.pacing import AsFastAsPossible, Pacing
 
 if TYPE_CHECKING:
     from vsgraphs.datasets.prefetch import LoadedFrame
+    from vsgraphs.run.listener import Listener
 
 # Of each kind of damage this many frames are named, the rest are counted.
 _NAMED_FRAMES = 5
-
-
-class Listener(Protocol):
-    """Who wants to know how a run goes."""
-
-    def frame(self, tally: Tally, status: str) -> None:
-        """A frame was dealt with."""
-        ...
-
-    def event(self, line: str) -> None:
-        """Something worth a line happened."""
-        ...
 
 
 @dataclass
@@ -38,6 +27,7 @@ class Tally:
     tracked: int = 0
     # reason -> frames: damaged, stalled (did not come in time), dropped, refused
     skipped: Counter[str] = field(default_factory=Counter)
+    statuses: Counter[str] = field(default_factory=Counter)  # of the others: ok, lost, ...
     warnings: list[str] = field(default_factory=list)
     first_tracked_at: float | None = None  # time.monotonic
     decode_spans: list[tuple[int, int, int]] = field(default_factory=list)  # begin us, duration us, frame
@@ -117,8 +107,9 @@ class Session:
         return True
 
     def _follow(self, status: str, frame: LoadedFrame) -> None:
-        """Tells when tracking is lost and found."""
+        """Counts, and tells when tracking is lost and found."""
         self._status = status
+        self.tally.statuses[status] += 1
         if status == "lost" and self._lost_since is None:
             self._lost_since = frame.timestamp
             self._tell(f"lost at frame {frame.index} ({frame.timestamp:.3f} s)")

@@ -1,0 +1,54 @@
+"""What a run came to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vsgraphs.scene_graph import SceneGraph
+    from vsgraphs.trajectory import Trajectory
+
+
+@dataclass(eq=False)
+class Result:
+    """A finished run. All coordinates are those of the files: levelled where the scene graph is.
+
+    folder: where the files are. trajectory: every tracked frame; keyframes: the same for keyframes; seconds,
+    (N, 4, 4) world_from_camera, metres. scene_graph: None in mode slam. info: run.json's content. files:
+    those written, by name. failure: what kept a part of it from being done or written; `vsgraphs.run` raises
+    it.
+    """
+
+    folder: Path
+    trajectory: Trajectory
+    keyframes: Trajectory
+    scene_graph: SceneGraph | None
+    info: dict[str, Any] = field(default_factory=dict)
+    files: dict[str, Path] = field(default_factory=dict)
+    failure: Exception | None = None
+
+    @property
+    def statuses(self) -> dict[str, int]:
+        """How many frames had each status ("ok", "lost", ...) or were skipped for each reason ("damaged",
+        "dropped", ...).
+        """
+        return {**self.info.get("statuses", {}), **self.info.get("skipped", {})}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What a person should know, a line each."""
+        return list(self.info.get("warnings", []))
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether it was ended before its source was."""
+        return bool(self.info.get("interrupted"))
+
+    def __repr__(self) -> str:
+        info, rooms = self.info, len(self.scene_graph.rooms) if self.scene_graph else 0
+        return (
+            f"Result({str(self.folder)!r}, {info.get('tracked', 0)} of {info.get('frames', 0)} frames, "
+            f"{len(self.keyframes)} keyframes, {rooms} rooms, {len(self.warnings)} warnings)"
+        )
