@@ -9,7 +9,6 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from types import SimpleNamespace
 
 import fake_core
 import numpy as np
@@ -23,18 +22,6 @@ from vsgraphs.trajectory import read_tum_trajectory
 
 FILES = ("trajectory.txt", "keyframes.txt", "map.ply", "scene_graph.json", "scene_graph.dsg.json")
 FILES += ("floorplan.svg", "planes.ply")
-
-
-@pytest.fixture
-def slam(monkeypatch: pytest.MonkeyPatch) -> fake_core.Slam:
-    """The stand-in that runs are made with."""
-    made = fake_core.Slam()
-    core = SimpleNamespace(
-        Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=lambda config, camera: made
-    )
-    monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
-    monkeypatch.setattr("vsgraphs.run.report.core", lambda: core)
-    return made
 
 
 def test_the_same_bytes_as_the_command(
@@ -70,16 +57,16 @@ def test_the_result_is_what_the_files_hold(recorded: Path, tmp_path: Path) -> No
 
 
 def test_without_out_there_is_a_new_folder(
-    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slam: fake_core.Slam
+    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fake: fake_core.Slam
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert [vsgraphs.run(recorded).folder.name for _ in "ab"] == ["slide_vsgraphs", "slide_vsgraphs-2"]
 
 
-def test_how_it_goes_is_told(recorded: Path, tmp_path: Path, slam: fake_core.Slam) -> None:
+def test_how_it_goes_is_told(recorded: Path, tmp_path: Path, fake: fake_core.Slam) -> None:
     shown: list[Progress] = []
     said: list[Message] = []
-    slam.script = ["ok"] * 10 + ["lost"] * 2
+    fake.script = ["ok"] * 10 + ["lost"] * 2
     vsgraphs.run(recorded, tmp_path, on_progress=shown.append, on_message=said.append)
     frames = [progress for progress in shown if not progress.doing]
     assert [progress.seen for progress in frames] == list(range(1, 61))
@@ -102,7 +89,7 @@ def test_mistakes_are_exceptions_of_one_line(recorded: Path, tmp_path: Path) -> 
 
 
 def test_an_exception_of_a_callback_keeps_what_was_tracked(
-    recorded: Path, tmp_path: Path, slam: fake_core.Slam
+    recorded: Path, tmp_path: Path, fake: fake_core.Slam
 ) -> None:
     def show(progress: Progress) -> None:
         if progress.seen == 10:
@@ -113,13 +100,13 @@ def test_an_exception_of_a_callback_keeps_what_was_tracked(
     assert report(tmp_path)["tracked"] == 10
 
 
-def test_stop_ends_it_with_results(recorded: Path, tmp_path: Path, slam: fake_core.Slam) -> None:
-    result = vsgraphs.run(recorded, tmp_path, stop=lambda: slam.seen >= 7)
-    assert (result.info["tracked"], result.interrupted, slam.stopped) == (7, True, True)
+def test_stop_ends_it_with_results(recorded: Path, tmp_path: Path, fake: fake_core.Slam) -> None:
+    result = vsgraphs.run(recorded, tmp_path, stop=lambda: fake.seen >= 7)
+    assert (result.info["tracked"], result.interrupted, fake.stopped) == (7, True, True)
 
 
 def test_ctrl_c_keeps_results_and_the_handler(
-    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slam: fake_core.Slam
+    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fake: fake_core.Slam
 ) -> None:
     before = signal.getsignal(signal.SIGINT)
 
@@ -135,7 +122,7 @@ def test_ctrl_c_keeps_results_and_the_handler(
 
 
 def test_a_second_ctrl_c_is_a_keyboard_interrupt(
-    recorded: Path, tmp_path: Path, slam: fake_core.Slam
+    recorded: Path, tmp_path: Path, fake: fake_core.Slam
 ) -> None:
     def interrupt(progress: Progress) -> None:
         if progress.seen == 5 or progress.doing:
@@ -146,7 +133,7 @@ def test_a_second_ctrl_c_is_a_keyboard_interrupt(
     vsgraphs.run(recorded, tmp_path, max_frames=5)  # nothing is held
 
 
-def test_on_another_thread(recorded: Path, tmp_path: Path, slam: fake_core.Slam) -> None:
+def test_on_another_thread(recorded: Path, tmp_path: Path, fake: fake_core.Slam) -> None:
     results: list[Result] = []
     thread = threading.Thread(target=lambda: results.append(vsgraphs.run(recorded, tmp_path)))
     thread.start()

@@ -282,12 +282,6 @@ def test_views_become_contiguous() -> None:
 # --- vsgraphs run --segmenter ---------------------------------------------------------------------------
 
 
-class Config(fake_core.Config):
-    def __init__(self) -> None:
-        super().__init__()
-        self.values["system.replay"] = ""
-
-
 @pytest.fixture
 def slams(monkeypatch: pytest.MonkeyPatch) -> list[Slam]:
     """The stand-ins that runs were made with."""
@@ -297,7 +291,7 @@ def slams(monkeypatch: pytest.MonkeyPatch) -> list[Slam]:
         made.append(Slam())
         return made[-1]
 
-    core = SimpleNamespace(Config=Config, Camera=lambda *_, **__: None, Slam=make)
+    core = SimpleNamespace(Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=make)
     monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
     monkeypatch.setattr("vsgraphs.run.report.core", lambda: core)
     return made

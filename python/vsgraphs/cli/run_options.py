@@ -56,6 +56,7 @@ def run(
         bool,
         typer.Option("--realtime", help="Pace frames by their timestamps; drop late ones like a camera."),
     ] = False,
+    every: Annotated[int, typer.Option(min=1, help="Take only each n-th frame.")] = 1,
     max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")] = None,
     config: Annotated[Path | None, typer.Option(help="YAML file of options (see `vsgraphs config`).")] = None,
     set_: Annotated[
@@ -70,7 +71,10 @@ def run(
     seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
     segmenter: Annotated[
         str,
-        typer.Option(help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images)."),
+        typer.Option(
+            help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images), "
+            "source (labels that come with the frames)."
+        ),
     ] = "geometry",
     markers: Annotated[
         Path | None,
@@ -144,6 +148,7 @@ def run(
             mode=mode,
             execution=execution,
             realtime=realtime or None,
+            every=every,
             max_frames=max_frames,
             config=config,
             options=list(set_ or []),

@@ -6,20 +6,22 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vsgraphs.errors import InputError
 from vsgraphs.run.naming import MarkerOutcome
+from vsgraphs.sources import camera_of
 
 if TYPE_CHECKING:
-    from vsgraphs.datasets import RecordedSequence
     from vsgraphs.markers import KeyframeMarkers, MarkerDetector, MarkerRegistry
     from vsgraphs.run.request import RunRequest
     from vsgraphs.segment import KeyframeSegmentation, RecordedSegmentations, Segmenter
+    from vsgraphs.sources import Facts, Source
 
 
 class Beside:
     """Of a request, made ready; `attach` puts it between the frames and the Slam. Raises InputError."""
 
-    def __init__(self, request: RunRequest, source: RecordedSequence) -> None:
-        self._segmenter = _segmenter(request.segmenter)
+    def __init__(self, request: RunRequest, source: Source, facts: Facts) -> None:
+        self._segmenter = _segmenter(request.segmenter, facts)
         self._file = request.markers
         self._registry: MarkerRegistry | None = None
         self._detector: MarkerDetector | None = None
@@ -29,7 +31,7 @@ class Beside:
             from vsgraphs.markers import MarkerDetector, load_markers
 
             self._registry = load_markers(Path(request.markers))
-            self._detector = MarkerDetector(self._registry, source.camera)
+            self._detector = MarkerDetector(self._registry, camera_of(source))
 
     def attach(self, slam: Any, config: Any, tell: Callable[[str], None]) -> Any:
         """Something with the Slam's `track`: the Slam itself where nothing was asked for.
@@ -57,12 +59,17 @@ class Beside:
 
 
 def _segmenter(
-    wanted: str | Segmenter | RecordedSegmentations,
+    wanted: str | Segmenter | RecordedSegmentations, facts: Facts
 ) -> Segmenter | RecordedSegmentations | None:
     if not isinstance(wanted, str):
         return wanted
     if wanted == "geometry":
         return None
+    if wanted == "source":
+        if "segmentations" not in facts.streams:
+            raise InputError(f"--segmenter source: {facts.name} brings no segmentations of its own")
+        recorded: RecordedSegmentations = facts.streams["segmentations"]
+        return recorded
     from vsgraphs.segment import make_segmenter
 
     return make_segmenter(wanted)

@@ -5,30 +5,29 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vsgraphs.datasets import RecordedSequence, open_sequence
-from vsgraphs.datasets.prefetch import Prefetcher
 from vsgraphs.errors import InputError
-from vsgraphs.export.atomic import prepare_directory
 from vsgraphs.export.lock import Locks
 from vsgraphs.run import measures
-from vsgraphs.run.atlas_files import AtlasFiles
-from vsgraphs.run.beside import Beside, segmenter_name
+from vsgraphs.run.beside import segmenter_name
 from vsgraphs.run.ending import attempt, end_work, leave_results
 from vsgraphs.run.listener import Listener
+from vsgraphs.run.opening import Opened, name_of_source, open_run
 from vsgraphs.run.outcome import RunOutcome
 from vsgraphs.run.output import results_folder
-from vsgraphs.run.pacing import AsFastAsPossible, Realtime
 from vsgraphs.run.request import RunRequest
 from vsgraphs.run.result_folder import ResultFolder
 from vsgraphs.run.session import Session, Tally
-from vsgraphs.run.settings import apply_assignments, apply_file, apply_shortcuts, apply_values
+from vsgraphs.run.settings import make_config
+from vsgraphs.run.summary import nothing_tracked
 from vsgraphs.run.watching import RunView
 from vsgraphs.run.writing import expected_files
+from vsgraphs.sources import Feed, camera_of
+from vsgraphs.sources.pacing import Realtime
 
 if TYPE_CHECKING:
     from vsgraphs.run.result import Result
@@ -40,7 +39,7 @@ class Run:
     """One run; `go` it once. `stop`, `stopped` and `last_words` are for any thread.
 
     since_s: when it began, on the clock of time.monotonic, and cpu_before_s what the process had cost then:
-    for a program that does nothing else, its start and 0.
+    for a program that does nothing else, its start and 0. view: where it is shown, once it is opened.
     """
 
     def __init__(
@@ -86,87 +85,69 @@ class Run:
         guard: entered as long as there is something to keep, from the first frame to the last file. Raises
         InputError where it cannot begin, or where nothing can be written.
         """
-        request = self._request
-        named_by = request.source.path if isinstance(request.source, RecordedSequence) else request.source
-        out = None if request.out is None else Path(request.out)
-        warn = lambda line: self._listener.event(f"warning: {line}")  # noqa: E731
-        with results_folder(out, Path(named_by)) as folder, Locks(warn) as locks:
-            return self._go(folder, locks, guard)
-
-    def _go(self, out: Path, locks: Locks, guard: Guard) -> Result:
         request, listener = self._request, self._listener
-        source = request.source
-        if not isinstance(source, RecordedSequence):
-            source = open_sequence(source, request.camera)
-        request.check()
-        beside = Beside(request, source)
-        prepare_directory(out)
-        locks.hold_folder(out)
-        request.check_schedule_out()
-        atlas = AtlasFiles.of(request, out, locks, listener)
-        self.view = RunView(request.showing, listener.event)
-        _announce(source, listener)
-        frames = source.frames[: request.max_frames]
+        out = None if request.out is None else Path(request.out)
+        warn = lambda line: listener.event(f"warning: {line}")  # noqa: E731
+        with results_folder(out, name_of_source(request.source)) as folder, Locks(warn) as locks:
+            opened = open_run(request, folder, locks, listener)
+            self.view = opened.view
+            return self._conduct(opened, locks, guard)
+
+    def _conduct(self, opened: Opened, locks: Locks, guard: Guard) -> Result:
+        listener, atlas = self._listener, opened.atlas
         # The first images decode while the core is loaded.
-        with Prefetcher(frames, limit_s=request.frame_timeout_s) as loaded:
+        with opened.feed() as feed:
             from vsgraphs.compiled import core
 
-            config = make_config(core(), request)
-            slam = atlas.start(core(), config, source.camera)
+            config = make_config(core(), self._request, live=opened.facts.live)
+            slam = atlas.start(core(), config, camera_of(opened.source))
             names = expected_files(config.get("system.mode"), atlas.save_to)
-            self._folder = ResultFolder(out, names, listener.event, locks.hold_folder)
-            listener.begin(len(frames))
+            self._folder = ResultFolder(opened.out, names, listener.event, locks.hold_folder)
+            listener.begin(opened.length)
             with guard(self):
-                self._at_stop(loaded.stop, slam.stop)
-                outcome, failure = self._track(source, loaded, slam, config, beside, atlas)
+                self._at_stop(feed.stop, slam.stop)
+                outcome, failure = self._track(opened, feed, slam, config)
                 result = leave_results(outcome, self._folder, atlas, failure, locks, listener)
-        result.failure = result.failure or listener.failure or self._vain(result, outcome.tally)
+        result.failure = result.failure or listener.failure or self._vain(result, outcome)
         return result
 
     def _track(
-        self,
-        source: RecordedSequence,
-        loaded: Prefetcher,
-        slam: Any,
-        config: Any,
-        beside: Beside,
-        atlas: AtlasFiles,
+        self, opened: Opened, feed: Feed, slam: Any, config: Any
     ) -> tuple[RunOutcome, Exception | None]:
         """All frames, and what they set off; what went wrong."""
-        listener = self._listener
-        pacing = Realtime(self.stopped) if config.get("system.realtime") else AsFastAsPossible()
+        listener, beside = self._listener, opened.beside
         tracker = beside.attach(slam, config, listener.event)
-        if self.view is not None:
-            tracker = self.view.watch(tracker, slam, source.calibration, config.get("system.mode"))
-        stamps = [frame.timestamp for frame in source.frames[: self._request.max_frames]]
-        session = Session(tracker, loaded, stamps, listener, pacing, self.stopped)
+        camera = getattr(opened.source, "calibration", None) or opened.source.camera
+        tracker = opened.view.watch(tracker, slam, camera, config.get("system.mode"))
+        at_pace = bool(config.get("system.realtime")) and not opened.facts.live
+        frames = Realtime(self.stopped).paced(feed) if at_pace else feed
+        session = Session(tracker, frames, listener, length=opened.length, stop=self.stopped)
         began = time.monotonic()
-        with atlas.saved_meanwhile(slam, listener.event):
+        with opened.atlas.saved_meanwhile(slam, listener.event):
             failure = attempt(session.run)
-        loaded.close()
+        feed.close()
         listener.doing("ending the work under way")
         failure = end_work(slam, beside, self.stopped, failure, listener.event)
-        outcome = self._outcome(source, config, slam, session.tally, time.monotonic() - began)
-        outcome.segmentation, outcome.view, outcome.warnings = beside.segmentation, self.view, atlas.warnings
-        outcome.markers = beside.marker_outcome()
-        return outcome, failure
+        return self._outcome(opened, config, slam, session.tally, time.monotonic() - began), failure
 
-    def _outcome(
-        self, source: RecordedSequence, config: Any, slam: Any, tally: Tally, wall_s: float
-    ) -> RunOutcome:
-        whole = self._request.max_frames is None and not tally.interrupted
-        first = tally.first_tracked_at
+    def _outcome(self, opened: Opened, config: Any, slam: Any, tally: Tally, wall_s: float) -> RunOutcome:
+        request, first = self._request, tally.first_tracked_at
+        whole = request.max_frames is None and request.every == 1 and not tally.interrupted
         return RunOutcome(
-            source,
+            opened.facts,
             config,
             slam,
             tally,
-            frames=tally.seen + (sum(source.skipped.values()) if whole else 0),
+            frames=tally.seen + (sum(opened.facts.skipped.values()) if whole else 0),
             wall_s=wall_s,
             startup_s=None if first is None else first - self._since_s,
             cpu_before_s=self._cpu_before_s,
-            segmenter=segmenter_name(self._request.segmenter),
-            map_colours=self._request.map_colours,
+            segmenter=segmenter_name(request.segmenter),
+            map_colours=request.map_colours,
+            segmentation=opened.beside.segmentation,
+            view=opened.view,
+            markers=opened.beside.marker_outcome(),
+            warnings=opened.atlas.warnings,
         )
 
     def _at_stop(self, *calls: Callable[[], object]) -> None:
@@ -174,39 +155,9 @@ class Run:
         if self._told_to_stop.is_set():  # it was told before there was anybody to call
             self.stop()
 
-    def _vain(self, result: Result, tally: Tally) -> InputError | None:
-        if result.info.get("tracked", 1) or tally.interrupted:
+    def _vain(self, result: Result, outcome: RunOutcome) -> InputError | None:
+        if result.info.get("tracked", 1) or outcome.tally.interrupted:
             return None
-        return InputError(nothing_tracked(self._request.source, tally))
-
-
-def _announce(source: RecordedSequence, listener: Listener) -> None:
-    """What was opened, and what had to be repaired."""
-    listener.note(source.describe())
-    for line in source.warnings:
-        listener.event(f"warning: {line}")
-
-
-def make_config(core: Any, request: RunRequest) -> Any:
-    """The core's Config: defaults, then the file, then the options, then those with keywords of their own."""
-    config = core.Config()
-    if request.config is not None:
-        apply_file(config, Path(request.config))
-    if isinstance(request.options, Mapping):
-        apply_values(config, request.options)
-    else:
-        apply_assignments(config, request.options)
-    apply_shortcuts(config, request.shortcuts())
-    return config
-
-
-def nothing_tracked(source: Any, tally: Tally) -> str:
-    """Why a run ended without a single pose, in one line."""
-    unusable = tally.skipped["damaged"] + tally.skipped["stalled"] + tally.skipped["refused"]
-    if tally.seen and unusable == tally.seen:
-        first = tally.warnings[0].removeprefix("skipped: ") if tally.warnings else "unknown"
-        return f"none of the {tally.seen} frames of {source} can be used; the first: {first}"
-    return (
-        f"no frame of {source} could be tracked ({tally.seen - unusable} of {tally.seen} readable): "
-        "too little depth or texture to start a map; check the depth images and depth_scale"
-    )
+        source = self._request.source
+        name = str(source) if isinstance(source, str | Path) else outcome.source.name
+        return InputError(nothing_tracked(name, outcome.tally))

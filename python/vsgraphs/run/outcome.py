@@ -6,20 +6,20 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vsgraphs.datasets import RecordedSequence
     from vsgraphs.export.timeline import Span
     from vsgraphs.markers import KeyframeMarkers
     from vsgraphs.run.naming import MarkerOutcome
     from vsgraphs.run.session import Tally
     from vsgraphs.run.watching import RunView
     from vsgraphs.segment import KeyframeSegmentation
+    from vsgraphs.sources import Facts
 
 
 @dataclass
 class RunOutcome:
     """A finished run, before it is written."""
 
-    source: RecordedSequence
+    source: Facts
     config: Any
     slam: Any
     tally: Tally

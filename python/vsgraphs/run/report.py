@@ -76,14 +76,9 @@ def _beside(outcome: RunOutcome, graph: SceneGraph | None) -> dict[str, Any]:
 
 
 def _origin(outcome: RunOutcome) -> dict[str, Any]:
-    source, config = outcome.source, outcome.config
+    config = outcome.config
     return {
-        "source": {
-            "name": source.name,
-            "path": str(source.path.resolve()),
-            "format": source.format,
-            "camera": source.calibration.origin,
-        },
+        "source": outcome.source.info,
         "versions": versions(core()),
         "commit": commit(core()),
         "configuration": {key: config.get(key) for key in config.keys()},  # noqa: SIM118

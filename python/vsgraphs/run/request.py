@@ -13,9 +13,9 @@ from vsgraphs.run.settings import Value
 from vsgraphs.run.watching import Showing
 
 if TYPE_CHECKING:
-    from vsgraphs.datasets import RecordedSequence
     from vsgraphs.run.listener import Message, Progress
     from vsgraphs.segment import RecordedSegmentations, Segmenter
+    from vsgraphs.sources import Source
 
 MAP_COLOURS = ("image", "class")
 StrPath = str | Path
@@ -25,8 +25,8 @@ StrPath = str | Path
 class RunRequest:
     """What a run is made of; `vsgraphs.run` takes these as arguments.
 
-    source: a sequence's folder, or an opened one. out: directory for the results; those of an earlier run in
-    it are replaced. None: a new ./NAME_vsgraphs, numbered.
+    source: a sequence's folder, or any source of frames (vsgraphs.sources). out: directory for the results;
+    those of an earlier run in it are replaced. None: a new ./NAME_vsgraphs, numbered.
 
     The keywords are the options of `vsgraphs run --help`, None where its default holds. A few differ:
     config is its YAML file and options are its --set, as {key: value} or as texts "KEY=VALUE"; segmenter may
@@ -37,13 +37,14 @@ class RunRequest:
     does. An exception that a callback raises ends the run likewise, and is raised once all is written.
     """
 
-    source: StrPath | RecordedSequence
+    source: StrPath | Source
     out: StrPath | None = None
     _: KW_ONLY
     camera: str | None = None
     mode: str | None = None
     execution: str | None = None
     realtime: bool | None = None
+    every: int = 1
     max_frames: int | None = None
     config: StrPath | None = None
     options: Mapping[str, Value] | Sequence[str] = ()
@@ -80,6 +81,10 @@ class RunRequest:
 
     def check(self) -> None:
         """Raises InputError for what can be known before anything is opened."""
+        if self.every < 1 or (self.max_frames is not None and self.max_frames < 1):
+            raise InputError("every and max_frames must be 1 or more")
+        if self.camera is not None and not isinstance(self.source, str | Path):
+            raise InputError("camera goes with a folder; a source says its camera itself")
         if self.map_colours not in MAP_COLOURS:
             raise InputError(f"--map-colours {self.map_colours}: must be one of {', '.join(MAP_COLOURS)}")
 

@@ -1,19 +1,18 @@
-"""The loop over a sequence's frames."""
+"""The loop over a source's frames."""
 
 from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.errors import StalledError
-from vsgraphs.run.pacing import AsFastAsPossible, Pacing
 
 if TYPE_CHECKING:
-    from vsgraphs.datasets.prefetch import LoadedFrame
     from vsgraphs.run.listener import Listener
+    from vsgraphs.sources import LoadedFrame
 
 # Of each kind of damage this many frames are named, the rest are counted.
 _NAMED_FRAMES = 5
@@ -23,7 +22,7 @@ _NAMED_FRAMES = 5
 class Tally:
     """What became of the frames so far."""
 
-    seen: int = 0  # handed out by the sequence, in whatever state
+    seen: int = 0  # handed out by the source, in whatever state
     tracked: int = 0
     # reason -> frames: damaged, stalled (did not come in time), dropped, refused
     skipped: Counter[str] = field(default_factory=Counter)
@@ -37,25 +36,25 @@ class Tally:
 class Session:
     """Feeds frames to a tracker until they end or `stop` says so; keeps count, never the frames.
 
-    slam: a `vsgraphs.Slam` or anything with its `track`. A frame that cannot be read or that the tracker
-    refuses is skipped and counted. What is lost and found again is told to the listener and kept as a
-    warning. Once `stop` says so no frame is begun; one that the tracker then hands back untracked was not.
+    slam: a `vsgraphs.Slam` or anything with its `track`. length: of the frames, if it is known. A frame that
+    cannot be read or that the tracker refuses is skipped and counted. What is lost and found again is told to
+    the listener and kept as a warning. Once `stop` says so no frame is begun; one that the tracker then hands
+    back untracked was not.
     """
 
     def __init__(
         self,
         slam: Any,
         frames: Iterable[LoadedFrame],
-        stamps: Sequence[float],
         listener: Listener,
-        pacing: Pacing | None = None,
+        *,
+        length: int | None = None,
         stop: Callable[[], bool] = lambda: False,
     ) -> None:
         self._slam = slam
         self._frames = frames
-        self._stamps = stamps
         self._listener = listener
-        self._pacing = pacing or AsFastAsPossible()
+        self._length = length
         self._stop = stop
         self._status = ""
         self._lost_since: float | None = None
@@ -67,28 +66,28 @@ class Session:
         for frame in self._frames:
             if self._stop():
                 break
-            following = self._stamps[frame.index + 1] if frame.index + 1 < len(self._stamps) else None
-            admitted = self._pacing.admit(frame.timestamp, following)
-            if self._stop():
-                break
             tally.seen += 1
-            tally.decode_spans.append(
-                (int(frame.begin_s * 1e6), int((frame.end_s - frame.begin_s) * 1e6), frame.index)
-            )
+            self._note_loading(frame)
             if frame.error is not None:
                 reason = "stalled" if isinstance(frame.error, StalledError) else "damaged"
                 self._skip(reason, str(frame.error))
-            elif not admitted:
+            elif frame.dropped:
                 self._skip("dropped", None)
             elif not self._track(frame):
                 tally.seen -= 1
                 break
             self._listener.frame(tally, self._status)
-        tally.interrupted = self._stop() and tally.seen < len(self._stamps)
+        tally.interrupted = self._stop() and (self._length is None or tally.seen < self._length)
         dropped = tally.skipped["dropped"]
         if dropped:
             tally.warnings.append(f"{dropped} frames came while an earlier one was tracked, dropped")
         return tally
+
+    def _note_loading(self, frame: LoadedFrame) -> None:
+        if frame.rgb is None and frame.error is None:
+            return  # a camera's frame that nobody looked at
+        duration_us = int((frame.end_s - frame.begin_s) * 1e6)
+        self.tally.decode_spans.append((int(frame.begin_s * 1e6), duration_us, frame.index))
 
     def _track(self, frame: LoadedFrame) -> bool:
         """False if the tracker passed the frame over, as it was told to stop."""

@@ -8,12 +8,32 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vsgraphs.errors import InputError
 from vsgraphs.reading import YamlNode, plain_value, read_yaml, shortened, shown
 
+if TYPE_CHECKING:
+    from vsgraphs.run.request import RunRequest
+
 Value = bool | int | float | str
+
+
+def make_config(core: Any, request: RunRequest, *, live: bool = False) -> Any:
+    """The core's Config: defaults, then the file, then the options, then those with keywords of their own.
+
+    live: the source is a camera, for which nothing waits unless `request` says otherwise.
+    """
+    config = core.Config()
+    if request.config is not None:
+        apply_file(config, Path(request.config))
+    if isinstance(request.options, Mapping):
+        apply_values(config, request.options)
+    else:
+        apply_assignments(config, request.options)
+    shortcuts = request.shortcuts()
+    apply_shortcuts(config, {"system.realtime": True, **shortcuts} if live else shortcuts)
+    return config
 
 
 def apply_file(config: Any, path: Path) -> None:
