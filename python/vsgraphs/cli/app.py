@@ -245,6 +245,38 @@ def info(
         show_atlas(what, as_json=as_json)
 
 
+@app.command(epilog=examples.EXPORT)
+def export(
+    run: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="Directory that `vsgraphs run` left.")],
+    names: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="NAME...",
+            help="Exporters: floorplan, planes, spark-dsg, or a plug-in's (see `vsgraphs plugins`).",
+            autocompletion=completion.exporters,
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Directory for the files.", show_default="RUN_DIR"),
+    ] = None,
+) -> None:
+    """Make files from a finished run."""
+    with told():
+        from vsgraphs.cli.plugin_commands import export_run
+
+        export_run(run, names, out)
+
+
+@app.command("plugins")
+def plugins_() -> None:
+    """List sources, segmenters, exporters and checks, those of other packages too."""
+    with told():
+        from vsgraphs.cli.plugin_commands import list_plugins
+
+        list_plugins()
+
+
 @app.command(epilog=examples.CONFIG)
 def config(
     search: Annotated[

@@ -16,10 +16,12 @@ VIEW_ADDRESS = "Listen at this IP address (127.0.0.1 unless given: only this mac
 
 def run(
     source: Annotated[
-        Path,
+        str,
         typer.Argument(
             metavar="FOLDER",
-            help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D.",
+            help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D; "
+            "or NAME:TEXT, a plug-in's source.",
+            autocompletion=completion.sources,
         ),
     ],
     out: Annotated[
@@ -83,6 +85,14 @@ def run(
     map_colours: Annotated[
         str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
     ] = "image",
+    export: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Also write the files of this exporter (see `vsgraphs plugins`); repeatable.",
+            autocompletion=completion.exporters,
+        ),
+    ] = None,
     schedule_out: Annotated[
         Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
     ] = None,
@@ -140,9 +150,10 @@ def run(
     with told():
         from vsgraphs.cli.run import run_sequence
         from vsgraphs.run import RunRequest, Showing
+        from vsgraphs.sources import names_plugin
 
         request = RunRequest(
-            source,
+            source if names_plugin(source) else Path(source),
             out,
             camera=camera,
             mode=mode,
@@ -158,6 +169,7 @@ def run(
             map_colours=map_colours,
             schedule_out=schedule_out,
             replay=replay,
+            exporters=list(export or []),
             showing=Showing(view, record, view_port, web, view_address),
             save_atlas=save_atlas,
             load_atlas=load_atlas,

@@ -16,6 +16,9 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vsgraphs.run.events import KeyframeEvent as KeyframeEvent
+    from vsgraphs.run.events import LoopEvent as LoopEvent
+    from vsgraphs.run.events import RoomEvent as RoomEvent
     from vsgraphs.run.listener import Message as Message
     from vsgraphs.run.listener import Progress as Progress
     from vsgraphs.run.request import RunRequest as RunRequest
@@ -24,15 +27,28 @@ if TYPE_CHECKING:
     from vsgraphs.run.watching import Showing as Showing
 
 _HOMES = {
+    "KeyframeEvent": "events",
+    "LoopEvent": "events",
     "Message": "listener",
     "Progress": "listener",
     "Result": "result",
+    "RoomEvent": "events",
     "RunRequest": "request",
     "Showing": "watching",
     "run": "start",
 }
 
-__all__ = ["Message", "Progress", "Result", "RunRequest", "Showing", "run"]
+__all__ = [
+    "KeyframeEvent",
+    "LoopEvent",
+    "Message",
+    "Progress",
+    "Result",
+    "RoomEvent",
+    "RunRequest",
+    "Showing",
+    "run",
+]
 
 
 def __getattr__(name: str) -> Any:

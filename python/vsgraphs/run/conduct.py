@@ -15,6 +15,7 @@ from vsgraphs.export.lock import Locks
 from vsgraphs.run import measures
 from vsgraphs.run.beside import segmenter_name
 from vsgraphs.run.ending import attempt, end_work, leave_results
+from vsgraphs.run.events import Events
 from vsgraphs.run.listener import Listener
 from vsgraphs.run.opening import Opened, name_of_source, open_run
 from vsgraphs.run.outcome import RunOutcome
@@ -107,7 +108,7 @@ class Run:
             with guard(self):
                 self._at_stop(feed.stop, slam.stop)
                 outcome, failure = self._track(opened, feed, slam, config)
-                result = leave_results(outcome, self._folder, atlas, failure, locks, listener)
+                result = leave_results(outcome, self._folder, opened, failure, locks, listener)
         result.failure = result.failure or listener.failure or self._vain(result, outcome)
         return result
 
@@ -121,13 +122,18 @@ class Run:
         tracker = opened.view.watch(tracker, slam, camera, config.get("system.mode"))
         at_pace = bool(config.get("system.realtime")) and not opened.facts.live
         frames = Realtime(self.stopped).paced(feed) if at_pace else feed
-        session = Session(tracker, frames, listener, length=opened.length, stop=self.stopped)
+        request = self._request
+        events = Events(slam, request.on_keyframe, request.on_room, request.on_loop)
+        session = Session(
+            tracker, frames, listener, length=opened.length, stop=self.stopped, tracked=events.after
+        )
         began = time.monotonic()
         with opened.atlas.saved_meanwhile(slam, listener.event):
             failure = attempt(session.run)
         feed.close()
         listener.doing("ending the work under way")
         failure = end_work(slam, beside, self.stopped, failure, listener.event)
+        failure = failure or attempt(events.end)
         return self._outcome(opened, config, slam, session.tally, time.monotonic() - began), failure
 
     def _outcome(self, opened: Opened, config: Any, slam: Any, tally: Tally, wall_s: float) -> RunOutcome:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from vsgraphs.run.atlas_files import AtlasFiles
     from vsgraphs.run.beside import Beside
     from vsgraphs.run.listener import Listener
+    from vsgraphs.run.opening import Opened
     from vsgraphs.run.outcome import RunOutcome
     from vsgraphs.run.result import Result
     from vsgraphs.run.result_folder import ResultFolder
@@ -68,7 +69,7 @@ def drain(beside: Beside, limit_s: float, stopped: Callable[[], bool], tell: Cal
 def leave_results(
     outcome: RunOutcome,
     folder: ResultFolder,
-    atlas: AtlasFiles,
+    opened: Opened,
     failure: Exception | None,
     locks: Locks,
     listener: Listener,
@@ -82,10 +83,11 @@ def leave_results(
         folder.leave_alone(f"{folder.folder} was removed, and made anew by another program")
     elif not outcome.tally.tracked and holds_a_trajectory(folder.folder):
         folder.leave_alone(f"nothing was tracked: the results of an earlier run in {folder.folder} stay")
+    atlas = opened.atlas
     saver = AtlasSaver(atlas, outcome.slam, listener.event)
     saving = [(str(atlas.save_to), saver.write)] if atlas.save_to is not None else []
     try:
-        result = write_results(outcome, folder, saving, listener)
+        result = write_results(outcome, folder, saving, opened.extensions, listener)
     except Exception:
         if failure is not None:
             raise failure from None

@@ -9,6 +9,7 @@ from vsgraphs.export.atomic import prepare_directory
 from vsgraphs.export.lock import Locks
 from vsgraphs.run.atlas_files import AtlasFiles
 from vsgraphs.run.beside import Beside
+from vsgraphs.run.extensions import Extensions
 from vsgraphs.run.listener import Listener
 from vsgraphs.run.request import RunRequest
 from vsgraphs.run.watching import RunView
@@ -26,6 +27,7 @@ class Opened:
     beside: Beside
     atlas: AtlasFiles
     view: RunView
+    extensions: Extensions
     out: Path
 
     @property
@@ -53,6 +55,7 @@ def open_run(request: RunRequest, out: Path, locks: Locks, listener: Listener) -
     facts = facts_of(source)
     request.check()
     beside = Beside(request, source, facts)
+    extensions = Extensions(request.exporters, request.checks)
     prepare_directory(out)
     locks.hold_folder(out)
     request.check_schedule_out()
@@ -61,7 +64,7 @@ def open_run(request: RunRequest, out: Path, locks: Locks, listener: Listener) -
     listener.note(facts.told)
     for line in facts.warnings:
         listener.event(f"warning: {line}")
-    return Opened(request, source, facts, beside, atlas, view, out)
+    return Opened(request, source, facts, beside, atlas, view, extensions, out)
 
 
 def name_of_source(source: Source | str | Path) -> Path:

@@ -13,6 +13,9 @@ from vsgraphs.run.settings import Value
 from vsgraphs.run.watching import Showing
 
 if TYPE_CHECKING:
+    from vsgraphs.run.events import KeyframeEvent, LoopEvent, RoomEvent
+    from vsgraphs.run.exporters import Exporter
+    from vsgraphs.run.extensions import Check
     from vsgraphs.run.listener import Message, Progress
     from vsgraphs.segment import RecordedSegmentations, Segmenter
     from vsgraphs.sources import Source
@@ -32,9 +35,13 @@ class RunRequest:
     config is its YAML file and options are its --set, as {key: value} or as texts "KEY=VALUE"; segmenter may
     be a function or object of vsgraphs.segment; showing is what to show it in.
 
+    exporters: names of exporters, or functions (Result) -> {file name: content}. checks: functions (Result)
+    -> lines that are warnings of the run; None: all that are installed.
+
     on_progress: called after each frame and each step of the end. on_message: called with each line that the
-    command line would print, from any thread. stop: asked before each frame; True ends the run as Ctrl-C
-    does. An exception that a callback raises ends the run likewise, and is raised once all is written.
+    command line would print, from any thread. on_keyframe, on_room, on_loop: called between two frames with
+    what is new, see vsgraphs.run.events. stop: asked before each frame; True ends the run as Ctrl-C does. An
+    exception that a callback raises ends the run likewise, and is raised once all is written.
     """
 
     source: StrPath | Source
@@ -62,8 +69,13 @@ class RunRequest:
     frame_timeout_s: float = 10.0
     overwrite: bool = False
     keep: int = 1
+    exporters: Sequence[str | Exporter] = ()
+    checks: Sequence[Check] | None = None
     on_progress: Callable[[Progress], object] | None = None
     on_message: Callable[[Message], object] | None = None
+    on_keyframe: Callable[[KeyframeEvent], object] | None = None
+    on_room: Callable[[RoomEvent], object] | None = None
+    on_loop: Callable[[LoopEvent], object] | None = None
     stop: Callable[[], bool] = lambda: False
 
     def shortcuts(self) -> dict[str, Value]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from vsgraphs.scene_graph import SceneGraph
-    from vsgraphs.trajectory import Trajectory
+from vsgraphs.errors import InputError
+from vsgraphs.reading import read_json
+from vsgraphs.scene_graph import SceneGraph, load_scene_graph
+from vsgraphs.trajectory import Trajectory, read_tum_trajectory
 
 
 @dataclass(eq=False)
@@ -28,6 +29,20 @@ class Result:
     info: dict[str, Any] = field(default_factory=dict)
     files: dict[str, Path] = field(default_factory=dict)
     failure: Exception | None = None
+
+    @classmethod
+    def load(cls, folder: Path | str) -> Result:
+        """Of a directory that an earlier run left. Raises InputError where it is none, or damaged."""
+        folder = Path(folder)
+        info = read_json(folder / "run.json", "figures of a run")
+        if not isinstance(info, dict) or not isinstance(info.get("tracked"), int):
+            raise InputError(f"{folder / 'run.json'}: not the run.json of a vsgraphs run")
+        trajectory = read_tum_trajectory(folder / "trajectory.txt")
+        keyframes = read_tum_trajectory(folder / "keyframes.txt")
+        graph = folder / "scene_graph.json"
+        scene_graph = load_scene_graph(graph) if graph.is_file() else None
+        files = {path.name: path for path in sorted(folder.iterdir()) if path.is_file()}
+        return cls(folder, trajectory, keyframes, scene_graph, info, files)
 
     @property
     def statuses(self) -> dict[str, int]:

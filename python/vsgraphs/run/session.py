@@ -39,7 +39,7 @@ class Session:
     slam: a `vsgraphs.Slam` or anything with its `track`. length: of the frames, if it is known. A frame that
     cannot be read or that the tracker refuses is skipped and counted. What is lost and found again is told to
     the listener and kept as a warning. Once `stop` says so no frame is begun; one that the tracker then hands
-    back untracked was not.
+    back untracked was not. tracked: called with each frame's TrackResult and timestamp.
     """
 
     def __init__(
@@ -50,12 +50,13 @@ class Session:
         *,
         length: int | None = None,
         stop: Callable[[], bool] = lambda: False,
+        tracked: Callable[[Any, float], object] = lambda *_: None,
     ) -> None:
         self._slam = slam
         self._frames = frames
         self._listener = listener
         self._length = length
-        self._stop = stop
+        self._stop, self._tracked = stop, tracked
         self._status = ""
         self._lost_since: float | None = None
         self.tally = Tally()
@@ -103,6 +104,7 @@ class Session:
         elif self._stop():
             return False
         self._follow(str(result.status), frame)
+        self._tracked(result, frame.timestamp)
         return True
 
     def _follow(self, status: str, frame: LoadedFrame) -> None:

@@ -41,7 +41,10 @@ def summarise(report: dict[str, Any], out: Path) -> str:
         lines.append(f"found {found}")
     lines += not_sought(report)
     lines += [f"warning: {line}" for line in what_is_missing(report)]
-    files = [name for name in RESULT_FILES if (out / name).is_file()]
+    checks = report.get("checks", {})
+    lines += [f"warning: {name}: {line}" for name, found in checks.items() for line in found]
+    names = (*RESULT_FILES, *report.get("exported", ()))
+    files = [name for name in names if (out / name).is_file()]
     return "\n".join([*lines, f"results in {out}: {' '.join(files)}"])
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from vsgraphs.run.extensions import Extensions
     from vsgraphs.run.listener import Listener
     from vsgraphs.run.outcome import RunOutcome
     from vsgraphs.run.result_folder import ResultFolder, Write
@@ -40,7 +41,11 @@ def expected_files(mode: str, atlas: Path | None) -> list[str]:
 
 
 def write_results(
-    outcome: RunOutcome, folder: ResultFolder, atlas: Sequence[tuple[str, Write]], listener: Listener
+    outcome: RunOutcome,
+    folder: ResultFolder,
+    atlas: Sequence[tuple[str, Write]],
+    extensions: Extensions,
+    listener: Listener,
 ) -> Result:
     """Writes all files, what matters most first.
 
@@ -52,7 +57,8 @@ def write_results(
 
     def figures() -> str:
         result.info.update(run_report(outcome, scene))
-        result.info["warnings"] += folder.warnings
+        result.info.update(extensions.report())
+        result.info["warnings"] += [*folder.warnings, *extensions.warnings]
         return json.dumps(result.info, indent=1) + "\n"
 
     files = _files(outcome, scene)
@@ -65,6 +71,8 @@ def write_results(
             listener.doing("closing the view")
         outcome.view.close()  # what came of it is written too
     folder.write([(name, _file(name, content)) for name, content in files.items()], listener.doing)
+    result.folder, result.files = folder.folder, folder.files()
+    extensions.run(result, folder, listener)
     folder.write(run_json, listener.doing)  # again, with the CPU and memory of the whole process
     result.folder, result.files = folder.folder, folder.files()
     return result
