@@ -224,6 +224,21 @@ def test_a_live_source_is_never_waited_for_and_ends_when_it_does(tmp_path: Path)
     assert result.info["tracked"] + result.statuses.get("dropped", 0) == 30
 
 
+def test_a_camera_that_gives_nothing_does_not_keep_a_run_from_ending(
+    tmp_path: Path, fake: fake_core.Slam
+) -> None:
+    silent, told = threading.Event(), threading.Event()
+
+    def camera() -> Iterator[Frame]:
+        yield image(0)
+        told.set()
+        silent.wait(30)
+
+    result = vsgraphs.run(Stream(camera(), live=True), tmp_path, stop=told.is_set)
+    silent.set()
+    assert result.interrupted
+
+
 def test_a_live_source_runs_until_it_is_told_to_stop(tmp_path: Path, fake: fake_core.Slam) -> None:
     def endless() -> Iterator[Frame]:
         index = 0

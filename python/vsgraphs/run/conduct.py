@@ -97,7 +97,7 @@ class Run:
     def _conduct(self, opened: Opened, locks: Locks, guard: Guard) -> Result:
         listener, atlas = self._listener, opened.atlas
         # The first images decode while the core is loaded.
-        with opened.feed() as feed:
+        with opened.feed(self.stopped) as feed:
             from vsgraphs.compiled import core
 
             config = make_config(core(), self._request, live=opened.facts.live)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,8 +36,8 @@ class Opened:
         """How many frames will come; None where nobody knows."""
         return thinned_length(self.facts.length, self.request.every, self.request.max_frames)
 
-    def feed(self) -> Feed:
-        """The frames, on their way from now on."""
+    def feed(self, stopped: Callable[[], bool]) -> Feed:
+        """The frames, on their way from now on. stopped: whether the run is told to end."""
         request = self.request
         return feed_of(
             self.source,
@@ -44,6 +45,7 @@ class Opened:
             every=request.every,
             most=request.max_frames,
             limit_s=request.frame_timeout_s,
+            stopped=stopped,
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from typing import Protocol
 
@@ -37,13 +37,14 @@ def feed_of(
     every: int = 1,
     most: int | None = None,
     limit_s: float = DEFAULT_LIMIT_S,
+    stopped: Callable[[], bool] = lambda: False,
 ) -> Feed:
     """Of a live source the newest frame each time; else all frames, loaded ahead.
 
-    every, most: see `thinned`. limit_s: how long a frame may take to load.
+    every, most: see `thinned`. limit_s: how long a recorded frame may take to load. stopped: see `Newest`.
     """
     frames = thinned(source.frames, every, most)
-    return Newest(frames) if live else Prefetcher(frames, limit_s=limit_s)
+    return Newest(frames, stopped) if live else Prefetcher(frames, limit_s=limit_s)
 
 
 def thinned(frames: Iterable[Frame], every: int = 1, most: int | None = None) -> Iterator[Frame]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from vsgraphs.sources.loaded import LoadedFrame, load
 from vsgraphs.sources.source import Frame
@@ -19,10 +19,11 @@ class Newest:
 
     Those in between come first, as dropped ones, never loaded. A thread of its own takes frames from the
     source; the newest is loaded on the thread that iterates. What the source raises is raised at its turn.
+    stopped: asked while there is no frame, on the thread that iterates; True ends the iteration.
     """
 
-    def __init__(self, frames: Iterable[Frame]) -> None:
-        self._frames = frames
+    def __init__(self, frames: Iterable[Frame], stopped: Callable[[], bool] = lambda: False) -> None:
+        self._frames, self._asked = frames, stopped
         self._changed = threading.Condition()  # guards all below
         self._come = 0  # frames
         self._newest: Frame | None = None
@@ -40,10 +41,11 @@ class Newest:
         self.close()
 
     def __iter__(self) -> Iterator[LoadedFrame]:
-        while True:
+        while not self._asked():
             with self._changed:
                 while self._newest is None and not (self._stopped or self._ended):
                     self._changed.wait(_SLICE_S)
+                    self._stopped = self._stopped or self._asked()
                 frame, self._newest = self._newest, None
                 missed, self._missed = self._missed, []
                 last = self._come - 1

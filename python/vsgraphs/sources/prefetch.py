@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from vsgraphs.errors import RunError, StalledError
+from vsgraphs.sources.following import with_following
 from vsgraphs.sources.loaded import LoadedFrame, load
 from vsgraphs.sources.source import Frame
 
@@ -43,7 +44,7 @@ class Prefetcher:
     ) -> None:
         if ahead < 1 or workers < 1:
             raise ValueError("ahead and workers must be at least 1")
-        self._pairs = _with_following(frames)
+        self._pairs = with_following(frames)
         self._pulling = threading.Lock()  # one at a time asks the source; taken before the next one
         self._ahead, self._limit_s = ahead, limit_s
         self._changed = threading.Condition()  # guards all below
@@ -166,28 +167,6 @@ class Prefetcher:
 
     def _may_go_on(self) -> bool:
         return self._stopped or self._count is not None or self._begun < self._taken + self._ahead
-
-
-def _with_following(frames: Iterable[Frame]) -> Generator[tuple[Frame, float | None]]:
-    """Each frame with the next one's timestamp; what the source raises comes after its last frame."""
-    iterator, before, trouble = iter(frames), None, None
-    try:
-        while True:
-            try:
-                frame = next(iterator, None)
-            except Exception as error:
-                frame, trouble = None, error
-            if before is not None:
-                yield before, None if frame is None else frame.timestamp
-            if frame is None:
-                break
-            before = frame
-    finally:
-        close = getattr(iterator, "close", None)
-        if close is not None:
-            close()
-    if trouble is not None:
-        raise trouble
 
 
 def _load(index: int, frame: Frame, following: float | None) -> LoadedFrame | Exception:
