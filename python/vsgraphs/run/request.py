@@ -40,8 +40,9 @@ class RunRequest:
 
     on_progress: called after each frame and each step of the end. on_message: called with each line that the
     command line would print, from any thread. on_keyframe, on_room, on_loop: called between two frames with
-    what is new, see vsgraphs.run.events. stop: asked before each frame, and while a live source has
-    none; True ends the run as Ctrl-C does. An exception that a callback raises ends the run likewise, and is raised once all is written.
+    what is new, see vsgraphs.run.events. stop: asked before each frame, and while a live source has none;
+    True ends the run as Ctrl-C does. An exception that a callback raises ends the run likewise, and is raised
+    once all is written.
     """
 
     source: StrPath | Source
