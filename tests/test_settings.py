@@ -26,6 +26,7 @@ def test_file_nested_or_dotted(tmp_path: Path) -> None:
         "system.mode": "slam",
         "system.realtime": False,
         "system.execution": "serial",
+        "system.replay": "",
         "tracker.max_features": 500,
         "tracker.huber_px": 3.0,
         "mapper.enabled": False,
