@@ -164,6 +164,33 @@ def test_a_broken_one_that_is_asked_for_is_a_mistake_of_one_line(
         assert not (tmp_path / "b").exists()
 
 
+@pytest.mark.parametrize("where", ["frames", "load"])
+def test_a_source_that_breaks_amid_a_run_keeps_what_was_tracked(
+    site: Path, recorded: Path, tmp_path: Path, vsgraphs: Program, where: str
+) -> None:
+    install(site, "wobbly", {"vsgraphs.sources": {"wobbly": "wobbly:Wobbly"}})
+    (site / "wobbly.py").write_text(
+        "import vsgraphs\n"
+        "class Frame:\n"
+        "    def __init__(self, frame): self.timestamp, self.load = frame.timestamp, self.fail\n"
+        "    def fail(self): raise KeyError('mine')\n"
+        "class Wobbly:\n"
+        "    def __init__(self, text):\n"
+        "        self.where, _, folder = text.partition(',')\n"
+        "        self.recorded = vsgraphs.open_sequence(folder)\n"
+        "        self.camera = self.recorded.camera\n"
+        "    @property\n"
+        "    def frames(self):\n"
+        "        yield from self.recorded.frames[:12]\n"
+        "        if self.where == 'load': yield Frame(self.recorded.frames[12])\n"
+        "        raise KeyError('mine')\n"
+    )
+    done = vsgraphs("run", f"wobbly:{where},{recorded}", "--out", tmp_path / "out")
+    assert "source wobbly failed: KeyError: 'mine'; update the package wobbly" in one_line_error(done)
+    assert report(tmp_path / "out")["tracked"] == 12
+    assert report(tmp_path / "out")["source"] == {"name": "Wobbly"}
+
+
 def test_what_is_listed(example: Path, broken: Path, vsgraphs: Program) -> None:
     done = vsgraphs("plugins")
     assert done.returncode == 0

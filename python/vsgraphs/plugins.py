@@ -34,10 +34,10 @@ class Plugin:
         try:
             loaded: Any = self.entry.load()
         except (Exception, SystemExit) as error:
-            raise InputError(self._trouble("cannot be loaded", error)) from None
+            raise InputError(self.trouble("cannot be loaded", error)) from None
         if not callable(loaded):
             found = TypeError(f"{self.entry.value} is no function")
-            raise InputError(self._trouble("cannot be loaded", found))
+            raise InputError(self.trouble("cannot be loaded", found))
         function: Callable[..., Any] = loaded
         return function
 
@@ -49,9 +49,9 @@ class Plugin:
         except InputError:
             raise
         except (Exception, SystemExit) as error:
-            raise InputError(self._trouble("failed", error)) from error
+            raise InputError(self.trouble("failed", error)) from error
 
-    def _trouble(self, what: str, error: BaseException) -> str:
+    def trouble(self, what: str, error: BaseException) -> str:
         """One line on what went wrong with it."""
         reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
         return (

@@ -39,7 +39,7 @@ def facts_of(source: Source) -> Facts:
     except (TypeError, ValueError) as error:
         raise InputError(f"source {name}: its info cannot be written as JSON: {error}") from None
     live = bool(getattr(source, "live", False))
-    length = None if live else _length(source)
+    length = None if live else length_of(source)
     describe = getattr(source, "describe", None)
     return Facts(
         name=name,
@@ -59,7 +59,8 @@ def camera_of(source: Source) -> Any:
     return camera.to_core() if isinstance(camera, Calibration) else camera
 
 
-def _length(source: Source) -> int | None:
+def length_of(source: Source) -> int | None:
+    """How many frames there are, as the source says or its list of frames shows; None where nobody knows."""
     given: int | None = getattr(source, "length", None)
     if given is not None or isinstance(getattr(type(source), "frames", None), property):
         return given  # a property may be a generator that is asked for once

@@ -7,6 +7,7 @@ from pathlib import Path
 from vsgraphs.datasets import open_sequence
 from vsgraphs.errors import InputError
 from vsgraphs.plugins import plugin, plugins
+from vsgraphs.sources.foreign import ForeignSource
 from vsgraphs.sources.source import Source
 
 
@@ -21,8 +22,8 @@ def open_source(what: str | Path, camera: str | None = None) -> Source:
     name, _, rest = str(what).partition(":")
     if camera is not None:
         raise InputError(f"--camera goes with a folder; the source {name} says its camera itself")
-    source: Source = plugin("source", name).call(rest)
-    return source
+    maker = plugin("source", name)
+    return ForeignSource(maker.call(rest), maker)
 
 
 def names_plugin(what: str | Path) -> bool:
