@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 import vsgraphs
-from vsgraphs.cli.settings import apply_assignments
 from vsgraphs.datasets import RecordedSequence
+from vsgraphs.run.settings import apply_assignments
 
 Interval = tuple[int, int]
 

@@ -24,7 +24,7 @@ import numpy as np
 from relocalisation import aligned, rmse_mm, true_positions
 
 import vsgraphs
-from vsgraphs.cli.settings import apply_assignments
+from vsgraphs.run.settings import apply_assignments
 from vsgraphs.trajectory import read_tum_trajectory
 
 

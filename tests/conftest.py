@@ -9,8 +9,10 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import fake_core
 import pytest
 from layouts import sliding_scene, write_tum
 
@@ -36,6 +38,18 @@ def shared_data() -> Path:
     if not folder:
         pytest.skip("VSGRAPHS_DATA does not name the folder of recorded sequences")
     return Path(folder)
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch) -> fake_core.Slam:
+    """Runs in this process are made with this stand-in for the compiled module."""
+    slam = fake_core.Slam()
+    core = SimpleNamespace(
+        Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=lambda config, camera: slam
+    )
+    monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
+    monkeypatch.setattr("vsgraphs.run.report.core", lambda: core)
+    return slam
 
 
 @pytest.fixture(scope="session")

@@ -103,6 +103,7 @@ class Config:
             "system.mode": "slam",  # what it has: no planes
             "system.realtime": False,
             "system.execution": "threaded",
+            "system.replay": "",
             "tracker.max_features": 1000,
             "tracker.huber_px": 2.5,
             "mapper.enabled": True,

@@ -40,14 +40,15 @@ def test_the_example_runs(scene: Scene, tmp_path: Path) -> None:
 
 def test_the_example_of_the_readme_runs(scene: Scene, tmp_path: Path) -> None:
     folder = write_tum(tmp_path / "slide", scene)
-    _, _, rest = (ROOT / "README.md").read_text().partition("```python\n")
-    program, _, _ = rest.partition("```")
-    program = program.replace("path/to/sequence", str(folder)) + "\nprint(len(poses), rooms)"
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False
-    )
+    blocks = [rest.partition("```")[0] for rest in (ROOT / "README.md").read_text().split("```python\n")[1:]]
+    program = "\n".join([*blocks, "print(len(poses), rooms)"]).replace("path/to/sequence", str(folder))
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == ["20", "{}"], "a wall of paint, seen for two seconds, is no room"
+    result, last = done.stdout.splitlines()
+    assert result.startswith("20 {} [")
+    assert "trajectory.txt" in result
+    assert last.split() == ["20", "{}"], "a wall of paint, seen for two seconds, is no room"
 
 
 @pytest.mark.parametrize("depth_in_metres", [False, True])
@@ -289,4 +290,4 @@ def test_importing_the_package_loads_nothing_heavy() -> None:
 
 
 def test_running_does_not_load_what_only_other_commands_need() -> None:
-    assert loaded_by("import vsgraphs.cli.run, vsgraphs.cli.results", "matplotlib", "rich", "typer") == []
+    assert loaded_by("import vsgraphs.cli.run", "matplotlib", "rich", "typer") == []

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from vsgraphs.cli.atlas_target import AtlasTarget
 from vsgraphs.errors import InputError
 from vsgraphs.export.lock import Locks
+from vsgraphs.run.atlas_target import AtlasTarget
 
 
 class Core:

@@ -21,8 +21,9 @@ import pytest
 from conftest import one_line_error, report
 
 from vsgraphs.cli.interrupt import Interrupt
-from vsgraphs.cli.run import RunRequest, run_sequence
+from vsgraphs.cli.run import run_sequence
 from vsgraphs.datasets.sequence import FrameRef
+from vsgraphs.run import RunRequest
 from vsgraphs.trajectory import read_tum_trajectory
 
 MAIN = "from vsgraphs.cli import main; print('begun', flush=True); main()"
@@ -72,7 +73,7 @@ def interrupted_run(recorded: Path, out: Path, slam: fake_core.Slam, monkeypatch
         Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=lambda config, camera: slam
     )
     monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
-    monkeypatch.setattr("vsgraphs.cli.results.core", lambda: core)
+    monkeypatch.setattr("vsgraphs.run.report.core", lambda: core)
     return run_sequence(RunRequest(recorded, out))
 
 
@@ -181,7 +182,7 @@ def test_a_signal_of_a_forked_child_is_its_own() -> None:
 
 BLOCKED = """
 import sys, threading
-import vsgraphs.cli.results as results
+import vsgraphs.run.writing as results
 from vsgraphs.cli import main
 results.format_ply = lambda *_: threading.Event().wait()
 print("begun", flush=True)

@@ -15,8 +15,6 @@ from fake_core import Config
 from layouts import write_openloris, write_redwood
 
 from vsgraphs.cli.compare import read_groundtruth
-from vsgraphs.cli.output import holds_a_trajectory
-from vsgraphs.cli.settings import apply_assignments, apply_file
 from vsgraphs.cli.show_run import describe_run
 from vsgraphs.datasets import read_camera_file
 from vsgraphs.datasets.lists import read_list
@@ -31,6 +29,8 @@ from vsgraphs.export.ply import read_ply
 from vsgraphs.markers import load_markers
 from vsgraphs.plans import load_plan
 from vsgraphs.reading import parse_json, parse_yaml, read_text, shortened, shown
+from vsgraphs.run.output import holds_a_trajectory
+from vsgraphs.run.settings import apply_assignments, apply_file
 from vsgraphs.scene_graph import load_scene_graph
 from vsgraphs.segment.label_folder import _load as load_class_image
 from vsgraphs.segment.onnx_model import OnnxSegmenter

@@ -10,8 +10,8 @@ import pytest
 from conftest import Program, one_line_error, report
 from PIL import Image
 
-from vsgraphs.cli.output import remove_earlier, results_folder
 from vsgraphs.errors import InputError
+from vsgraphs.run.output import remove_earlier, results_folder
 
 
 @pytest.fixture(autouse=True)
@@ -103,15 +103,14 @@ def test_a_place_that_cannot_be_written_to(monkeypatch: pytest.MonkeyPatch) -> N
 EARLIER = ("run.json", "scene_graph.json", "floorplan.svg", "trajectory.txt")
 
 
-def test_an_earlier_run_s_files_are_not_mixed_with_these(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_earlier_run_s_files_are_not_mixed_with_these(tmp_path: Path) -> None:
+    told: list[str] = []
     for name in (*EARLIER, "notes.txt", "house.vsg"):
         (tmp_path / name).touch()
-    remove_earlier(tmp_path, ["run.json", "trajectory.txt", "map.ply"])
+    remove_earlier(tmp_path, ["run.json", "trajectory.txt", "map.ply"], told.append)
     left = {path.name for path in tmp_path.iterdir() if path.is_file()}
     assert left == {"run.json", "trajectory.txt", "notes.txt", "house.vsg"}
-    assert "of an earlier run: floorplan.svg, scene_graph.json" in capsys.readouterr().err
+    assert "of an earlier run: floorplan.svg, scene_graph.json" in told[0]
 
 
 def test_a_run_that_tracks_nothing_leaves_good_results_alone(
@@ -129,11 +128,12 @@ def test_a_run_that_tracks_nothing_leaves_good_results_alone(
     assert json.loads((tmp_path / "results-2" / "run.json").read_text())["tracked"] == 0
 
 
-def test_files_that_no_run_left_stay(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_that_no_run_left_stay(tmp_path: Path) -> None:
+    told: list[str] = []
     (tmp_path / "floorplan.svg").touch()
-    remove_earlier(tmp_path, ["run.json"])
+    remove_earlier(tmp_path, ["run.json"], told.append)
     assert (tmp_path / "floorplan.svg").exists()
-    assert capsys.readouterr().err == ""
+    assert not told
 
 
 def test_a_run_with_landmarks_only_into_the_directory_of_a_whole_one(

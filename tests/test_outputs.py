@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vsgraphs.cli import measures
 from vsgraphs.cli.progress import Progress
-from vsgraphs.cli.session import Tally
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import prepare_directory, write_atomically
 from vsgraphs.export.ply import format_ply
 from vsgraphs.export.timeline import format_timeline
+from vsgraphs.run import measures
+from vsgraphs.run.session import Tally
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,8 +9,8 @@ import pytest
 from layouts import write_tum
 
 from vsgraphs.datasets import open_sequence
-from vsgraphs.datasets.prefetch import Prefetcher
 from vsgraphs.errors import FrameError
+from vsgraphs.sources.prefetch import Prefetcher
 
 
 class SlowFrame:

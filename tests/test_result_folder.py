@@ -9,12 +9,12 @@ from pathlib import Path
 import fake_core
 import pytest
 
-from vsgraphs.cli.atlas_files import AtlasFiles
-from vsgraphs.cli.atlas_target import AtlasTarget
-from vsgraphs.cli.ending import _AtlasSaver
-from vsgraphs.cli.result_folder import ResultFolder, Write, new_folder_beside
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import remove_unfinished, write_atomically
+from vsgraphs.run.atlas_files import AtlasFiles
+from vsgraphs.run.atlas_target import AtlasTarget
+from vsgraphs.run.ending import AtlasSaver
+from vsgraphs.run.result_folder import ResultFolder, Write, new_folder_beside
 
 NAMES = ("a.txt", "b.txt", "c.txt")
 
@@ -211,7 +211,7 @@ def test_an_atlas_that_cannot_be_saved_is_saved_with_the_results(tmp_path: Path)
     out.mkdir()
     (out / "house.vsg").write_text("another one")
     atlas, said = atlas_files(tmp_path / "gone" / "house.vsg"), []
-    saver = _AtlasSaver(atlas, fake_core.Slam(), said.append)
+    saver = AtlasSaver(atlas, fake_core.Slam(), said.append)
     saver.write(out)
     assert (out / "house-1.vsg").read_text() == "atlas"
     assert (out / "house.vsg").read_text() == "another one"
@@ -225,7 +225,7 @@ def test_an_atlas_that_cannot_be_saved_is_saved_with_the_results(tmp_path: Path)
 def test_an_atlas_within_results_that_moved_moves_too(tmp_path: Path) -> None:
     out, beside = tmp_path / "out", tmp_path / "out-2"
     atlas = atlas_files(out / "house.vsg")
-    saver = _AtlasSaver(atlas, fake_core.Slam(), print)
+    saver = AtlasSaver(atlas, fake_core.Slam(), print)
     with pytest.raises(InputError):
         saver.write(out)
     beside.mkdir()
@@ -234,7 +234,7 @@ def test_an_atlas_within_results_that_moved_moves_too(tmp_path: Path) -> None:
 
 
 def test_an_empty_map_is_not_worth_another_file(tmp_path: Path) -> None:
-    saver = _AtlasSaver(atlas_files(tmp_path / "gone" / "a.vsg", keyframes=0), fake_core.Slam(), print)
+    saver = AtlasSaver(atlas_files(tmp_path / "gone" / "a.vsg", keyframes=0), fake_core.Slam(), print)
     with pytest.raises(InputError):
         saver.write(tmp_path)
     assert names_in(tmp_path) == []

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 from conftest import Program, one_line_error, report
 
-from vsgraphs.cli.run import RunRequest, run_sequence
+from vsgraphs.cli.run import run_sequence
+from vsgraphs.run import RunRequest
 from vsgraphs.trajectory import read_tum_trajectory
 
 OUTPUTS = (
@@ -175,7 +176,7 @@ def test_a_defect_of_ours_keeps_what_was_tracked(
         Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=lambda config, camera: Breaking()
     )
     monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
-    monkeypatch.setattr("vsgraphs.cli.results.core", lambda: core)
+    monkeypatch.setattr("vsgraphs.run.report.core", lambda: core)
     with pytest.raises(RuntimeError, match="invariant"):
         run_sequence(RunRequest(recorded, tmp_path))
     assert report(tmp_path)["tracked"] == 10

@@ -16,9 +16,10 @@ from conftest import report
 from fake_core import Slam
 from tiny_models import colour_model, write_sidecar
 
-from vsgraphs.cli.ending import _drain as drain
-from vsgraphs.cli.run import RunRequest, run_sequence
+from vsgraphs.cli.run import run_sequence
 from vsgraphs.errors import FrameError, InputError
+from vsgraphs.run import RunRequest
+from vsgraphs.run.ending import drain
 from vsgraphs.segment import KeyframeSegmentation, Segmentation, SurfaceRole, attach
 from vsgraphs.segment.segmentation import checked
 
@@ -156,14 +157,12 @@ def test_a_grey_image_is_segmented_as_rgb() -> None:
 
 
 @pytest.mark.parametrize("what", ["limit", "signal", "done"])
-def test_the_program_stops_waiting_at_its_limit_or_a_signal(
-    gate: Gate, capsys: pytest.CaptureFixture[str], what: str
-) -> None:
+def test_the_program_stops_waiting_at_its_limit_or_a_signal(gate: Gate, what: str) -> None:
     slam = Slam()
     segmentation = KeyframeSegmentation(slam, gate)
     track(segmentation, 0, 11)
     assert gate.entered.wait(30)
-    asked = list[int]()
+    asked, told = list[int](), list[str]()
 
     def stop() -> bool:
         asked.append(1)
@@ -171,8 +170,9 @@ def test_the_program_stops_waiting_at_its_limit_or_a_signal(
             gate.open.set()
         return what == "signal" and len(asked) > 2
 
-    drain(segmentation, None, 0.0 if what == "limit" else 60.0, stop)
-    assert (capsys.readouterr().err != "") == (what != "limit")
+    beside = SimpleNamespace(segmentation=segmentation, markers=None)
+    drain(beside, 0.0 if what == "limit" else 60.0, stop, told.append)
+    assert bool(told) == (what != "limit")
     counts = segmentation.report()
     if what == "limit":
         assert (counts["segmented"], counts["dropped"]) == (0, 3)
@@ -282,12 +282,6 @@ def test_views_become_contiguous() -> None:
 # --- vsgraphs run --segmenter ---------------------------------------------------------------------------
 
 
-class Config(fake_core.Config):
-    def __init__(self) -> None:
-        super().__init__()
-        self.values["system.replay"] = ""
-
-
 @pytest.fixture
 def slams(monkeypatch: pytest.MonkeyPatch) -> list[Slam]:
     """The stand-ins that runs were made with."""
@@ -297,9 +291,9 @@ def slams(monkeypatch: pytest.MonkeyPatch) -> list[Slam]:
         made.append(Slam())
         return made[-1]
 
-    core = SimpleNamespace(Config=Config, Camera=lambda *_, **__: None, Slam=make)
+    core = SimpleNamespace(Config=fake_core.Config, Camera=lambda *_, **__: None, Slam=make)
     monkeypatch.setattr("vsgraphs.compiled.core", lambda: core)
-    monkeypatch.setattr("vsgraphs.cli.results.core", lambda: core)
+    monkeypatch.setattr("vsgraphs.run.report.core", lambda: core)
     return made
 
 
@@ -307,7 +301,7 @@ def slams(monkeypatch: pytest.MonkeyPatch) -> list[Slam]:
 def test_run_with_a_network(recorded: Path, tmp_path: Path, slams: list[Slam], execution: str) -> None:
     write_sidecar(tmp_path / "m.json", input={"layout": "NCHW", "size": [16, 12]})
     text = f"onnx:{colour_model(tmp_path / 'm.onnx')}"
-    request = RunRequest(recorded, tmp_path, segmenter=text, shortcuts={"system.execution": execution})
+    request = RunRequest(recorded, tmp_path, segmenter=text, execution=execution)
     assert run_sequence(request) == 0
     run = report(tmp_path)
     counts = run["segmentation"]
@@ -334,9 +328,7 @@ def test_run_with_labels(recorded: Path, tmp_path: Path, slams: list[Slam]) -> N
     Image.fromarray(np.full((4, 4), 1, np.uint8)).save(labels / "a.png")
     (labels / "labels.txt").write_text("100.500000 a.png\n101.000000 b.png\n")
     (labels / "classes.json").write_text('{"classes": {"wall": 1}}')
-    request = RunRequest(
-        recorded, tmp_path, segmenter=f"labels:{labels}", shortcuts={"system.execution": "serial"}
-    )
+    request = RunRequest(recorded, tmp_path, segmenter=f"labels:{labels}", execution="serial")
     assert run_sequence(request) == 0
     run = report(tmp_path)
     del run["segmentation"]["median_ms"]

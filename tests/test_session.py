@@ -8,11 +8,12 @@ import pytest
 from fake_core import Slam
 from layouts import write_tum
 
-from vsgraphs.cli.pacing import Realtime
-from vsgraphs.cli.session import Session, Tally
 from vsgraphs.datasets import open_sequence
-from vsgraphs.datasets.prefetch import LoadedFrame, Prefetcher
 from vsgraphs.errors import FrameError
+from vsgraphs.run.session import Session, Tally
+from vsgraphs.sources import LoadedFrame
+from vsgraphs.sources.pacing import Realtime
+from vsgraphs.sources.prefetch import Prefetcher
 
 
 class Lines:
@@ -32,19 +33,17 @@ class Lines:
 def frames(count: int, damaged: tuple[int, ...] = (), fps: float = 10.0) -> Iterator[LoadedFrame]:
     rgb, depth = np.zeros((4, 4, 3), np.uint8), np.ones((4, 4), np.uint16)
     for i in range(count):
+        following = (i + 1) / fps if i + 1 < count else None
         if i in damaged:
-            yield LoadedFrame(i, i / fps, None, None, FrameError(f"{i}.png is damaged: cut"), 0.0, 0.001)
+            error = FrameError(f"{i}.png is damaged: cut")
+            yield LoadedFrame(i, i / fps, None, None, error, 0.0, 0.001, following)
         else:
-            yield LoadedFrame(i, i / fps, rgb, depth, None, 0.0, 0.001)
-
-
-def stamps(count: int, fps: float = 10.0) -> list[float]:
-    return [i / fps for i in range(count)]
+            yield LoadedFrame(i, i / fps, rgb, depth, None, 0.0, 0.001, following)
 
 
 def test_all_frames_are_tracked() -> None:
     slam, listener = Slam(), Lines()
-    tally = Session(slam, frames(20), stamps(20), listener).run()
+    tally = Session(slam, frames(20), listener).run()
     assert (tally.seen, tally.tracked, slam.seen) == (20, 20, 20)
     assert not tally.skipped
     assert not tally.warnings
@@ -55,14 +54,14 @@ def test_all_frames_are_tracked() -> None:
 
 def test_damaged_frames_are_skipped_counted_and_named() -> None:
     listener = Lines()
-    tally = Session(Slam(), frames(20, damaged=(0, 3, 19)), stamps(20), listener).run()
+    tally = Session(Slam(), frames(20, damaged=(0, 3, 19)), listener).run()
     assert (tally.seen, tally.tracked, tally.skipped["damaged"]) == (20, 17, 3)
     assert listener.lines == [f"skipped: {i}.png is damaged: cut" for i in (0, 3, 19)]
 
 
 def test_many_damaged_frames_do_not_flood() -> None:
     listener = Lines()
-    tally = Session(Slam(), frames(200, damaged=tuple(range(100))), stamps(200), listener).run()
+    tally = Session(Slam(), frames(200, damaged=tuple(range(100))), listener).run()
     assert (tally.tracked, tally.skipped["damaged"]) == (100, 100)
     assert len(listener.lines) == 6
     assert "counted but not named" in listener.lines[-1]
@@ -70,7 +69,7 @@ def test_many_damaged_frames_do_not_flood() -> None:
 
 def test_a_frame_the_tracker_refuses_is_skipped() -> None:
     listener = Lines()
-    tally = Session(Slam(["initialised", "refused"]), frames(5), stamps(5), listener).run()
+    tally = Session(Slam(["initialised", "refused"]), frames(5), listener).run()
     assert (tally.tracked, tally.skipped["refused"]) == (4, 1)
     assert "frame 1 at 0.100000 s: rgb: must be larger" in listener.lines[0]
 
@@ -78,7 +77,7 @@ def test_a_frame_the_tracker_refuses_is_skipped() -> None:
 def test_loss_and_return_are_told() -> None:
     listener = Lines()
     script = ["initialised", "ok", "coasting", "lost", "lost", "lost", "relocalised", "ok"]
-    tally = Session(Slam(script), frames(10), stamps(10), listener).run()
+    tally = Session(Slam(script), frames(10), listener).run()
     assert tally.tracked == 7
     assert listener.lines == [
         "lost at frame 3 (0.300 s)",
@@ -89,7 +88,7 @@ def test_loss_and_return_are_told() -> None:
 
 def test_stop_keeps_what_is_there() -> None:
     slam = Slam()
-    tally = Session(slam, frames(50), stamps(50), Lines(), stop=lambda: slam.seen >= 7).run()
+    tally = Session(slam, frames(50), Lines(), length=50, stop=lambda: slam.seen >= 7).run()
     assert tally.interrupted
     assert (tally.seen, tally.tracked) == (7, 7)
 
@@ -100,7 +99,7 @@ def test_an_error_of_ours_is_not_swallowed() -> None:
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        Session(Broken(), frames(3), stamps(3), Lines()).run()
+        Session(Broken(), frames(3), Lines()).run()
 
 
 class Clock:
@@ -133,7 +132,7 @@ def paced(costs: list[float], count: int = 12) -> tuple[Tally, Working]:
     clock = Clock()
     slam = Working(clock, costs)
     pacing = Realtime(lambda: False, clock, clock.sleep)
-    return Session(slam, frames(count), stamps(count), Lines(), pacing).run(), slam
+    return Session(slam, pacing.paced(frames(count)), Lines()).run(), slam
 
 
 def test_realtime_gives_each_frame_at_its_time() -> None:
@@ -170,7 +169,7 @@ def test_with_a_folder_and_threads(tmp_path: Path) -> None:
     sequence = open_sequence(write_tum(tmp_path / "s"))
     sequence.frames[2].depth_path.unlink()
     with Prefetcher(sequence.frames) as loaded:
-        tally = Session(Slam(), loaded, [frame.timestamp for frame in sequence.frames], Lines()).run()
+        tally = Session(Slam(), loaded, Lines()).run()
     assert (tally.tracked, tally.skipped["damaged"]) == (7, 1)
     assert len(tally.decode_spans) == 8
     assert all(duration > 0 for _, duration, _ in tally.decode_spans)

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from fake_core import Config
 
-from vsgraphs.cli.settings import apply_assignments, apply_file, apply_shortcuts
 from vsgraphs.errors import InputError
 from vsgraphs.reading import plain_value
+from vsgraphs.run.settings import apply_assignments, apply_file, apply_shortcuts
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -26,6 +26,7 @@ def test_file_nested_or_dotted(tmp_path: Path) -> None:
         "system.mode": "slam",
         "system.realtime": False,
         "system.execution": "serial",
+        "system.replay": "",
         "tracker.max_features": 500,
         "tracker.huber_px": 3.0,
         "mapper.enabled": False,

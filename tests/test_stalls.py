@@ -16,13 +16,14 @@ import pytest
 from conftest import Program, report
 from fake_core import Slam
 
-from vsgraphs.cli.session import Session, Tally
-from vsgraphs.datasets import open_sequence, prefetch
+from vsgraphs.datasets import open_sequence
 from vsgraphs.datasets.decode import image_size, load_depth, load_rgb
-from vsgraphs.datasets.prefetch import MOST_STUCK, Prefetcher
 from vsgraphs.errors import FrameError, InputError, RunError, StalledError
 from vsgraphs.reading import open_regular
+from vsgraphs.run.session import Session, Tally
 from vsgraphs.segment.label_folder import _load as load_labels
+from vsgraphs.sources import prefetch
+from vsgraphs.sources.prefetch import MOST_STUCK, Prefetcher
 
 
 def no_file(kind: str, path: Path) -> Path:
@@ -153,7 +154,7 @@ class Silent:
 def test_stalled_frames_are_counted_by_themselves() -> None:
     made = frames(6, stuck=(3,))
     with Prefetcher(made, limit_s=0.1) as loaded:
-        tally = Session(Slam(), loaded, [frame.timestamp for frame in made], Silent()).run()
+        tally = Session(Slam(), loaded, Silent()).run()
     assert (tally.seen, tally.tracked, dict(tally.skipped)) == (6, 5, {"stalled": 1})
     assert tally.warnings == ["skipped: rgb/3.png or depth/3.png: no answer within 0.1 s"]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from vsgraphs.cli.summary import summarise, what_is_missing, what_was_found
+from vsgraphs.run.summary import summarise, what_is_missing, what_was_found
 
 ROOMS = {
     "frame": "levelled",

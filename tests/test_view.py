@@ -14,10 +14,11 @@ import pytest
 from layouts import Scene, write_tum
 from scene_worlds import building, camera_poses, perfect_map
 
-from vsgraphs.cli.viewing import RunView, Showing, view_run
+from vsgraphs.cli.viewing import view_run
 from vsgraphs.datasets import Calibration
 from vsgraphs.errors import InputError
 from vsgraphs.lens import depth_metres, distort
+from vsgraphs.run.watching import RunView, Showing
 from vsgraphs.scene_graph import SceneGraph, format_scene_graph
 from vsgraphs.view.camera import back_project, landmarks_in_view, pixel_rays
 from vsgraphs.view.layers import MAX_LINKED_KEYFRAMES, layered_graph, wall_heading

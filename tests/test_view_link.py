@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 
 from vsgraphs.cli import viewing
-from vsgraphs.cli.viewing import RunView, Showing, wait_with_page
+from vsgraphs.cli.viewing import wait_with_page
 from vsgraphs.datasets import Calibration
 from vsgraphs.errors import InputError
+from vsgraphs.run.watching import RunView, Showing
 from vsgraphs.view import LiveView, link, live, ports, server
 from vsgraphs.view.link import Link
 from vsgraphs.view.sinks import Sinks

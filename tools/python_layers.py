@@ -24,8 +24,60 @@ def _imports(tree: ast.Module, package: tuple[str, ...]) -> Iterator[tuple[int, 
                 yield node.lineno, f"{stem}.{alias.name}"
 
 
+def _without_types(tree: ast.Module) -> ast.Module:
+    """The module less what stands under `if TYPE_CHECKING`, which is never run."""
+
+    class Cut(ast.NodeTransformer):
+        def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
+            self.generic_visit(node)
+            test = node.test
+            named = test.id if isinstance(test, ast.Name) else getattr(test, "attr", "")
+            return node.orelse if named == "TYPE_CHECKING" else node
+
+    Cut().visit(tree)
+    return tree
+
+
+def circles(source: Path) -> list[list[str]]:
+    """Modules that import each other, imports within functions included, each circle once and sorted.
+
+    What is imported for types alone does not count, nor that a package's `__init__` runs before its modules.
+    """
+    modules = {_dotted(path, source): path for path in sorted(source.rglob("*.py"))}
+    below: dict[str, set[str]] = {}
+    for name, path in modules.items():
+        relative = path.relative_to(source)
+        found = _imports(_without_types(ast.parse(path.read_text())), ("vsgraphs", *relative.parts[:-1]))
+        targets = {full if full in modules else full.rpartition(".")[0] for _, full in found}
+        below[name] = (targets & set(modules)) - {name, "vsgraphs"}
+    reached = {name: _reached(name, below) for name in below}
+    in_one = {
+        name: tuple(sorted(other for other in reached[name] if name in reached[other]))
+        for name in below
+        if name in reached[name]
+    }
+    return [list(circle) for circle in sorted(set(in_one.values()))]
+
+
+def _dotted(path: Path, source: Path) -> str:
+    parts = path.relative_to(source).with_suffix("").parts
+    return ".".join(["vsgraphs", *(part for part in parts if part != "__init__")])
+
+
+def _reached(start: str, below: dict[str, set[str]]) -> set[str]:
+    """All that imports lead to from a module; itself only by a circle."""
+    reached: set[str] = set()
+    ahead = list(below[start])
+    while ahead:
+        name = ahead.pop()
+        if name not in reached:
+            reached.add(name)
+            ahead += below[name]
+    return reached
+
+
 def check(root: Path) -> list[str]:
-    """Checks that each part of the Python package imports only parts of lower rows."""
+    """Checks that each part of the Python package imports only parts of lower rows, and no module itself."""
     settings = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["vsgraphs"]
     floor = {part: index for index, row in enumerate(settings["python_layers"]) for part in row}
     forbidden = set(settings["never_imported"])
@@ -46,4 +98,5 @@ def check(root: Path) -> list[str]:
             target = rest[0] if top == "vsgraphs" and rest else ""
             if target in floor and target != part and floor[target] <= floor[part]:
                 problems.append(f"{where}:{line}: {part} imports {target}, which is not below it")
+    problems += [f"python/vsgraphs: {' and '.join(circle)} import each other" for circle in circles(source)]
     return problems

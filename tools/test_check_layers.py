@@ -159,6 +159,17 @@ def test_allows_in_python(project: Path, path: str, text: str) -> None:
     assert python_problems(project, path, text + "\n") == []
 
 
+def test_finds_modules_that_import_each_other(project: Path) -> None:
+    python_problems(project, "cli/one.py", "def f():\n    from vsgraphs.cli.two import g\n")
+    python_problems(project, "cli/two.py", "import vsgraphs.cli.three\n")
+    problems = python_problems(project, "cli/three.py", "from .one import f\n")
+    assert problems == [
+        "python/vsgraphs: vsgraphs.cli.one and vsgraphs.cli.three and vsgraphs.cli.two import each other"
+    ]
+    types = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .one import f\n"
+    assert python_problems(project, "cli/three.py", types) == []
+
+
 def test_this_checkout_keeps_its_layers(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,5 +1,9 @@
 """vsgraphs: RGB-D SLAM and 3D scene graphs in one factor graph.
 
+    result = vsgraphs.run("path/to/sequence", out="results")  # all that the program `vsgraphs run` does
+
+Or frame by frame:
+
     config = vsgraphs.Config()
     slam = vsgraphs.Slam(config, sequence.camera)
     for rgb, depth, timestamp in frames:  # (H, W, 3) uint8, (H, W) uint16 raw or float32 m, seconds
@@ -32,6 +36,8 @@ if TYPE_CHECKING:
     from vsgraphs.errors import FrameError as FrameError
     from vsgraphs.errors import InputError as InputError
     from vsgraphs.evaluate import evaluate as evaluate
+    from vsgraphs.run import Result as Result
+    from vsgraphs.run import run as run
     from vsgraphs.trajectory import Trajectory as Trajectory
 
 _CORE = ("Atlas", "AtlasState", "Camera", "Config", "Slam", "Snapshot", "TrackResult", "load_atlas")
@@ -39,6 +45,7 @@ _PYTHON = {
     "Calibration": "vsgraphs.datasets",
     "FrameError": "vsgraphs.errors",
     "InputError": "vsgraphs.errors",
+    "Result": "vsgraphs.run",
     "Sequence": "vsgraphs.datasets",
     "Trajectory": "vsgraphs.trajectory",
     "evaluate": "vsgraphs.evaluate",
@@ -53,6 +60,7 @@ __all__ = [
     "Config",
     "FrameError",
     "InputError",
+    "Result",
     "Sequence",
     "Slam",
     "Snapshot",
@@ -61,6 +69,7 @@ __all__ = [
     "evaluate",
     "load_atlas",
     "open_sequence",
+    "run",
 ]
 
 
@@ -74,6 +83,10 @@ def __getattr__(name: str) -> Any:
         import importlib
 
         value = getattr(importlib.import_module(_PYTHON[name]), name)
+    elif name == "run":
+        import importlib
+
+        value = importlib.import_module("vsgraphs.run")  # a module that can be called
     elif name == "__version__":
         from vsgraphs.version import version
 

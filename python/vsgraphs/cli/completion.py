@@ -41,6 +41,22 @@ def cameras(incomplete: str) -> list[str]:
     return [name for name in CAMERAS if name.startswith(incomplete)] or _files(incomplete)
 
 
+def sources(incomplete: str) -> list[str]:
+    """Of `run`: folders as the shell would, and what plug-ins' sources are called."""
+    from vsgraphs.plugins import plugins
+
+    named = [f"{name}:" for name in plugins("source") if name.startswith(incomplete)]
+    return named + [name for name in _files(incomplete) if name.endswith("/")]
+
+
+def exporters(incomplete: str) -> list[str]:
+    """Of `export` and `run --export`: those of the program and of plug-ins."""
+    from vsgraphs.plugins import plugins
+    from vsgraphs.run.exporters import BUILT_IN
+
+    return [name for name in sorted({*BUILT_IN, *plugins("exporter")}) if name.startswith(incomplete)]
+
+
 def plans(incomplete: str) -> list[str]:
     """Of `simulate`: plans that come with the package, and files as the shell would."""
     from vsgraphs.plans.load import plan_names

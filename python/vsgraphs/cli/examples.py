@@ -32,6 +32,8 @@ SIMULATE = "Example: vsgraphs simulate two_rooms --every 3 --out rooms, then vsg
 
 INFO = "Examples: vsgraphs info RESULTS; vsgraphs info house.vsg --json"
 
+EXPORT = "Example: vsgraphs export RESULTS floorplan spark-dsg --out elsewhere"
+
 CONFIG = (
     "Examples: vsgraphs config tracker; vsgraphs config explain orb.max_features; "
     "vsgraphs config --yaml > mine.yaml"

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import os
 import sys
 from collections.abc import Iterator
 
-from vsgraphs.errors import InputError, RunError
+from vsgraphs.errors import InputError, is_mistake, is_want_of_memory
 from vsgraphs.reading import shortened
 
 EXIT_MISTAKE = 2  # something the user can cure
 EXIT_DEFECT = 1  # something only we can cure
 EXIT_INTERRUPTED = 130
 _LONGEST = 800  # characters of a line
-_NO_ROOM = ("can't start new thread", "failed to map segment", "annot allocate memory")
 
 _debug = False
 
@@ -50,17 +48,9 @@ def told() -> Iterator[None]:
         sys.exit(EXIT_DEFECT)
 
 
-def is_mistake(error: Exception) -> bool:
-    """Whether the user can cure it: our InputError, the compiled module's, an unusable machine or file."""
-    if isinstance(error, InputError | RunError | ImportError | OSError) or _is_want_of_memory(error):
-        return True
-    compiled = getattr(sys.modules.get("vsgraphs._core"), "InputError", InputError)
-    return isinstance(error, compiled)
-
-
 def line_of(error: Exception) -> str:
     """What there is to say of an error, in one line."""
-    if _is_want_of_memory(error):
+    if is_want_of_memory(error):
         return (
             "not enough memory: close other programs, raise `ulimit -v`, "
             "or give smaller images or fewer frames (--max-frames)"
@@ -76,15 +66,3 @@ def say(line: str) -> None:
     """One line on stderr, whatever it holds."""
     with contextlib.suppress(OSError):
         print(shortened(line, _LONGEST), file=sys.stderr, flush=True)
-
-
-def _is_want_of_memory(error: BaseException | None) -> bool:
-    """Whether that is what is behind it: libraries and threads that find no room say so in their own ways."""
-    for _ in range(5):
-        if error is None:
-            return False
-        no_room = isinstance(error, OSError) and error.errno == errno.ENOMEM
-        if isinstance(error, MemoryError) or no_room or any(sign in str(error) for sign in _NO_ROOM):
-            return True
-        error = error.__cause__ or error.__context__
-    return False

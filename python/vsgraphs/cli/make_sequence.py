@@ -13,11 +13,11 @@ from typing import Any
 
 from vsgraphs.cli.interrupt import Interrupt
 from vsgraphs.cli.progress import Progress
-from vsgraphs.cli.session import Tally
 from vsgraphs.errors import InputError
 from vsgraphs.export.atomic import write_atomically
 from vsgraphs.export.lock import Locks
 from vsgraphs.plans import plan_text
+from vsgraphs.run.session import Tally
 from vsgraphs.simulate import Output, simulate
 from vsgraphs.simulate.camera import parse_effects
 from vsgraphs.simulate.folder import part_of

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
-    from vsgraphs.cli.session import Tally
+    from vsgraphs.run.session import Tally
 
 _BAR = 24
 _ON_TERMINAL_S = 0.1
@@ -21,7 +21,7 @@ class Progress:
     """A bar on a terminal, a line every five seconds elsewhere: frames, speed, state, time left."""
 
     def __init__(
-        self, total: int, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
+        self, total: int | None, stream: TextIO | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._total = total
         self._stream = stream or sys.stderr
@@ -62,6 +62,8 @@ class Progress:
             self._drawn = False
 
     def _text(self, tally: Tally, status: str, speed: float) -> str:
+        if self._total is None:
+            return f"{tally.seen} frames  {speed:.0f} frames/s  {status}".rstrip()
         share = tally.seen / self._total if self._total else 1.0
         left = f"{_duration((self._total - tally.seen) / speed)} left" if speed > 0 else ""
         text = f"{tally.seen}/{self._total} frames  {speed:.0f} frames/s  {status}  {left}".rstrip()

@@ -16,10 +16,12 @@ VIEW_ADDRESS = "Listen at this IP address (127.0.0.1 unless given: only this mac
 
 def run(
     source: Annotated[
-        Path,
+        str,
         typer.Argument(
             metavar="FOLDER",
-            help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D.",
+            help="A sequence: TUM, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS or Redwood/Open3D; "
+            "or NAME:TEXT, a plug-in's source.",
+            autocompletion=completion.sources,
         ),
     ],
     out: Annotated[
@@ -56,6 +58,7 @@ def run(
         bool,
         typer.Option("--realtime", help="Pace frames by their timestamps; drop late ones like a camera."),
     ] = False,
+    every: Annotated[int, typer.Option(min=1, help="Take only each n-th frame.")] = 1,
     max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")] = None,
     config: Annotated[Path | None, typer.Option(help="YAML file of options (see `vsgraphs config`).")] = None,
     set_: Annotated[
@@ -70,7 +73,10 @@ def run(
     seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
     segmenter: Annotated[
         str,
-        typer.Option(help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images)."),
+        typer.Option(
+            help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images), "
+            "source (labels that come with the frames)."
+        ),
     ] = "geometry",
     markers: Annotated[
         Path | None,
@@ -79,6 +85,14 @@ def run(
     map_colours: Annotated[
         str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
     ] = "image",
+    export: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Also write the files of this exporter (see `vsgraphs plugins`); repeatable.",
+            autocompletion=completion.exporters,
+        ),
+    ] = None,
     schedule_out: Annotated[
         Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
     ] = None,
@@ -133,39 +147,37 @@ def run(
     ] = 1,
 ) -> None:
     """Track a camera through a recorded sequence: trajectory, map, scene graph, floor plan."""
-    from vsgraphs.cli.output import results_folder
+    with told():
+        from vsgraphs.cli.run import run_sequence
+        from vsgraphs.run import RunRequest, Showing
+        from vsgraphs.sources import names_plugin
 
-    with told(), results_folder(out, source) as folder:
-        from vsgraphs.cli.run import RunRequest, run_sequence
-        from vsgraphs.cli.viewing import Showing
-
-        shortcuts = {
-            "system.mode": mode,
-            "system.execution": execution,
-            "system.realtime": realtime or None,
-            "system.seed": seed,
-            "system.schedule_out": None if schedule_out is None else str(schedule_out),
-            "system.replay": None if replay is None else str(replay),
-            "system.localise_only": localise_only or None,
-        }
         request = RunRequest(
-            source=source,
-            out=folder,
+            source if names_plugin(source) else Path(source),
+            out,
             camera=camera,
+            mode=mode,
+            execution=execution,
+            realtime=realtime or None,
+            every=every,
             max_frames=max_frames,
+            config=config,
+            options=list(set_ or []),
+            seed=seed,
             segmenter=segmenter,
-            map_colours=map_colours,
             markers=markers,
-            config_file=config,
-            assignments=list(set_ or []),
+            map_colours=map_colours,
+            schedule_out=schedule_out,
+            replay=replay,
+            exporters=list(export or []),
+            showing=Showing(view, record, view_port, web, view_address),
             save_atlas=save_atlas,
             load_atlas=load_atlas,
+            localise_only=localise_only,
             autosave_s=autosave,
             frame_timeout_s=frame_timeout,
             overwrite=overwrite,
             keep=keep,
-            shortcuts={key: value for key, value in shortcuts.items() if value is not None},
-            showing=Showing(view, record, view_port, web, view_address),
         )
         code = run_sequence(request)
     raise typer.Exit(code)

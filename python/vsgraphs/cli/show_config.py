@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from vsgraphs.cli.settings import unknown_key
 from vsgraphs.errors import InputError
+from vsgraphs.run.settings import unknown_key
 
 # What names end with -> unit for people. Longest first: _m2 is no _m.
 _UNITS = (

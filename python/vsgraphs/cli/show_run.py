@@ -7,9 +7,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from vsgraphs.cli.summary import RESULT_FILES, count, what_was_found
 from vsgraphs.errors import InputError
 from vsgraphs.reading import read_json, shortened
+from vsgraphs.run.summary import RESULT_FILES, count, what_was_found
 from vsgraphs.scene_graph import DoorNode, RoomNode, SceneGraph, load_scene_graph
 
 _WARNINGS = 5  # so many are printed, the rest counted

@@ -130,6 +130,21 @@ class RecordedSequence:
         return self.path.resolve().name
 
     @property
+    def length(self) -> int:
+        """How many frames there are."""
+        return len(self.frames)
+
+    @property
+    def info(self) -> dict[str, str]:
+        """What run.json says of it."""
+        return {
+            "name": self.name,
+            "path": str(self.path.resolve()),
+            "format": self.format,
+            "camera": self.calibration.origin,
+        }
+
+    @property
     def camera(self) -> Any:
         """A new `vsgraphs.Camera` from the calibration."""
         return self.calibration.to_core()

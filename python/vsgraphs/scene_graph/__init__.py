@@ -10,10 +10,11 @@ from vsgraphs.scene_graph.file_format import (
     load_scene_graph,
     parse_scene_graph,
 )
-from vsgraphs.scene_graph.graph import SECTIONS, SceneGraph
+from vsgraphs.scene_graph.graph import SceneGraph
 from vsgraphs.scene_graph.levelling import transform_plane, transform_points, transform_poses
 from vsgraphs.scene_graph.nodes import (
     ROLES,
+    SECTIONS,
     DoorNode,
     FloorNode,
     Frame,

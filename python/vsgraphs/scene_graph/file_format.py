@@ -18,8 +18,9 @@ from vsgraphs.reading import LARGE, read_json, shown
 from vsgraphs.scene_graph.consistency import check_edges, check_extents, check_references
 from vsgraphs.scene_graph.edges import Edge, ordered
 from vsgraphs.scene_graph.extent import PlaneExtent
-from vsgraphs.scene_graph.graph import SECTIONS, SceneGraph
+from vsgraphs.scene_graph.graph import SceneGraph
 from vsgraphs.scene_graph.nodes import (
+    SECTIONS,
     DoorNode,
     FloorNode,
     Frame,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from vsgraphs.scene_graph import levelling
 from vsgraphs.scene_graph.consistency import check_edges, check_references
 from vsgraphs.scene_graph.edges import edges_of
 from vsgraphs.scene_graph.extent import extent_of
-from vsgraphs.scene_graph.graph import SECTIONS, SceneGraph
 from vsgraphs.scene_graph.nodes import (
     ROLES,
+    SECTIONS,
     DoorNode,
     FloorNode,
     Frame,
@@ -27,11 +27,14 @@ from vsgraphs.scene_graph.nodes import (
 )
 from vsgraphs.trajectory import Array
 
+if TYPE_CHECKING:
+    from vsgraphs.scene_graph.graph import SceneGraph
+
 Row = Mapping[str, Any]
 
 
-def graph_from_map(raw: Row, keyframes: tuple[Any, Any, Any]) -> SceneGraph:
-    """See SceneGraph.from_map."""
+def fill_from_map(graph: SceneGraph, raw: Row, keyframes: tuple[Any, Any, Any]) -> None:
+    """Fills an empty graph; see SceneGraph.from_map."""
     ids, stamps, poses = keyframes
     poses = np.asarray(poses, dtype=np.float64).reshape(-1, 4, 4)
     order = np.argsort(np.asarray(ids), kind="stable")
@@ -39,7 +42,7 @@ def graph_from_map(raw: Row, keyframes: tuple[Any, Any, Any]) -> SceneGraph:
     first = poses[order[0]] if len(order) else np.eye(4)
     frame = levelling.level(None if up is None else _vector(up, "up"), raw.get("planes") or [], first)
     mover = _Mover(frame)
-    graph = SceneGraph(frame=frame)
+    graph.frame = frame
     graph.estimated = frozenset({"keyframes", *(name for name in SECTIONS if raw.get(name) is not None)})
     moved = levelling.transform_poses(frame.world_from_map, poses)
     graph.keyframes = {int(ids[i]): KeyframeNode(int(ids[i]), float(stamps[i]), moved[i]) for i in order}
@@ -57,7 +60,6 @@ def graph_from_map(raw: Row, keyframes: tuple[Any, Any, Any]) -> SceneGraph:
     check_references(graph, "the map")
     graph.edges = edges_of(graph, raw.get("wall_pairs") or [])
     check_edges(graph, "the map")
-    return graph
 
 
 class _Mover:

@@ -12,7 +12,10 @@ from vsgraphs.errors import InputError
 from vsgraphs.reading import shown
 from vsgraphs.scene_graph import levelling, queries
 from vsgraphs.scene_graph.edges import Edge
+from vsgraphs.scene_graph.from_map import fill_from_map
+from vsgraphs.scene_graph.networks import to_networkx
 from vsgraphs.scene_graph.nodes import (
+    SECTIONS,
     DoorNode,
     FloorNode,
     Frame,
@@ -25,8 +28,6 @@ from vsgraphs.scene_graph.nodes import (
 
 if TYPE_CHECKING:
     from vsgraphs.trajectory import Array
-
-SECTIONS = ("keyframes", "planes", "rooms", "floors", "doors", "markers", "places")
 
 
 @dataclass(eq=False)
@@ -56,9 +57,9 @@ class SceneGraph:
         world_from_camera (N, 4, 4); both in the map's frame. Raises InputError for values that are not
         finite and for references to nodes that are not there.
         """
-        from vsgraphs.scene_graph.from_map import graph_from_map
-
-        return graph_from_map(raw, keyframes)
+        graph = cls()
+        fill_from_map(graph, raw, keyframes)
+        return graph
 
     def poses_from_map(self, poses: Array) -> Array:
         """(N, 4, 4) poses in the map's frame (`slam.trajectory()`, `snapshot.keyframes()`) -> the graph's."""
@@ -94,6 +95,4 @@ class SceneGraph:
 
     def to_networkx(self) -> Any:
         """A networkx.MultiDiGraph; see `networks`. Raises InputError where networkx is not installed."""
-        from vsgraphs.scene_graph.networks import to_networkx
-
         return to_networkx(self)

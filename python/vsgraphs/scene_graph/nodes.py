@@ -9,6 +9,7 @@ import numpy as np
 from vsgraphs.scene_graph.extent import PlaneExtent
 from vsgraphs.trajectory import Array
 
+SECTIONS = ("keyframes", "planes", "rooms", "floors", "doors", "markers", "places")
 ROLES = ("undecided", "wall", "ground", "ceiling", "door", "window", "other")
 
 

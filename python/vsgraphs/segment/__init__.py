@@ -15,7 +15,7 @@ See docs/segmentation.md.
 from vsgraphs.segment.choose import make_segmenter
 from vsgraphs.segment.keyframes import KeyframeSegmentation, attach
 from vsgraphs.segment.roles import SurfaceRole, role_of_class
-from vsgraphs.segment.segmentation import RecordedSegmentations, Segmentation, Segmenter
+from vsgraphs.segment.segmentation import RecordedSegmentations, Segmentation, Segmenter, name_of
 
 __all__ = [
     "KeyframeSegmentation",
@@ -25,5 +25,6 @@ __all__ = [
     "SurfaceRole",
     "attach",
     "make_segmenter",
+    "name_of",
     "role_of_class",
 ]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vsgraphs.errors import InputError
+from vsgraphs.plugins import plugins
 from vsgraphs.reading import plain_value, shortened, shown
 
 if TYPE_CHECKING:
@@ -21,11 +22,14 @@ _ONNX_OPTIONS = ("sidecar", "threads", "provider", "limit")
 
 def make_segmenter(text: str) -> Segmenter | RecordedSegmentations | None:
     """'geometry' -> None (surfaces are told apart by geometry alone), 'onnx:FILE[,sidecar=FILE][,threads=N]
-    [,provider=NAME][,limit=SECONDS]', 'labels:DIR'. Raises InputError.
+    [,provider=NAME][,limit=SECONDS]', 'labels:DIR', or 'NAME[:TEXT]' of a plug-in. Raises InputError.
     """
     kind, colon, rest = text.partition(":")
     if kind == GEOMETRY and not colon:
         return None
+    if kind not in _KINDS and kind in (others := plugins("segmenter")):
+        made: Segmenter | RecordedSegmentations = others[kind].call(rest)
+        return made
     if kind not in _KINDS or kind == GEOMETRY:
         near = get_close_matches(kind, _KINDS, n=1, cutoff=0.5)
         hint = f"did you mean '{near[0]}'? " if near and near[0] != kind else ""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from vsgraphs.plans.buildings.building import Order
 from vsgraphs.plans.buildings.draw import Draw
 from vsgraphs.plans.buildings.furnishing import Furnishing
 from vsgraphs.plans.buildings.hall import Hall
 from vsgraphs.plans.buildings.office import WALL_M
+from vsgraphs.plans.buildings.order import Order
 from vsgraphs.plans.buildings.site import Frame, Site
 from vsgraphs.plans.buildings.storeys import build_storeys
 from vsgraphs.plans.buildings.wing import CORRIDOR_M, MIDDLE_M, PASSAGE_M, Wing, row_length

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from vsgraphs.plans.buildings.building import Order
 from vsgraphs.plans.buildings.draw import Draw
 from vsgraphs.plans.buildings.office import DOOR_M, WALL_M, Storey
+from vsgraphs.plans.buildings.order import Order
 from vsgraphs.plans.buildings.site import Frame, Item, Point, Site
 from vsgraphs.plans.buildings.wing import MIDDLE_M, Wing, row_length
 

@@ -5,15 +5,35 @@ key.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vsgraphs.errors import InputError
 from vsgraphs.reading import YamlNode, plain_value, read_yaml, shortened, shown
 
+if TYPE_CHECKING:
+    from vsgraphs.run.request import RunRequest
+
 Value = bool | int | float | str
+
+
+def make_config(core: Any, request: RunRequest, *, live: bool = False) -> Any:
+    """The core's Config: defaults, then the file, then the options, then those with keywords of their own.
+
+    live: the source is a camera, for which nothing waits unless `request` says otherwise.
+    """
+    config = core.Config()
+    if request.config is not None:
+        apply_file(config, Path(request.config))
+    if isinstance(request.options, Mapping):
+        apply_values(config, request.options)
+    else:
+        apply_assignments(config, request.options)
+    shortcuts = request.shortcuts()
+    apply_shortcuts(config, {"system.realtime": True, **shortcuts} if live else shortcuts)
+    return config
 
 
 def apply_file(config: Any, path: Path) -> None:
@@ -29,7 +49,7 @@ def apply_file(config: Any, path: Path) -> None:
         _set(config, key, str(leaf.value), f"{path}:{line}", quoted=leaf.quoted)
 
 
-def apply_assignments(config: Any, assignments: list[str]) -> None:
+def apply_assignments(config: Any, assignments: Iterable[str]) -> None:
     """Sets `key=value` options given on the command line; values are read as in a file."""
     for assignment in assignments:
         key, equals, text = assignment.partition("=")
@@ -38,6 +58,12 @@ def apply_assignments(config: Any, assignments: list[str]) -> None:
                 f"--set {shortened(assignment)}: expected KEY=VALUE, e.g. --set tracker.max_features=1200"
             )
         _set(config, key.strip(), text.strip(), f"--set {shortened(assignment)}")
+
+
+def apply_values(config: Any, values: Mapping[str, Value]) -> None:
+    """Sets options given as {key: value}; texts are taken as they are."""
+    for key, value in values.items():
+        _set(config, key, value, "options", quoted=True)
 
 
 def apply_shortcuts(config: Any, shortcuts: dict[str, Value]) -> None:

@@ -7,8 +7,7 @@ import itertools
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from vsgraphs.cli.failures import is_mistake
-from vsgraphs.errors import InputError
+from vsgraphs.errors import InputError, is_mistake
 
 # Writes one file into the folder it is given. What the user can cure (no space) is raised as InputError.
 Write = Callable[[Path], object]
@@ -70,6 +69,14 @@ class ResultFolder:
             + (f", nor {', '.join(name for name, _ in others)}" if others else "")
             + (f"; written: {', '.join(self._written)}" if self._written else "; nothing was written")
         )
+
+    def files(self) -> dict[str, Path]:
+        """What is written, by its last name, and where it is."""
+        named = [
+            (Path(name), self.folder / name) for name in self._written
+        ]  # an atlas is where it was asked for
+        paths = [path if path.is_file() else other for other, path in named]
+        return {path.name: path for path in paths if path.is_file()}
 
     def last_words(self) -> str:
         """For a process that ends now."""

@@ -1,43 +1,32 @@
-"""The loop over a sequence's frames."""
+"""The loop over a source's frames."""
 
 from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from vsgraphs.cli.pacing import AsFastAsPossible, Pacing
 from vsgraphs.errors import StalledError
 
 if TYPE_CHECKING:
-    from vsgraphs.datasets.prefetch import LoadedFrame
+    from vsgraphs.run.listener import Listener
+    from vsgraphs.sources import LoadedFrame
 
 # Of each kind of damage this many frames are named, the rest are counted.
 _NAMED_FRAMES = 5
-
-
-class Listener(Protocol):
-    """Who wants to know how a run goes."""
-
-    def frame(self, tally: Tally, status: str) -> None:
-        """A frame was dealt with."""
-        ...
-
-    def event(self, line: str) -> None:
-        """Something worth a line happened."""
-        ...
 
 
 @dataclass
 class Tally:
     """What became of the frames so far."""
 
-    seen: int = 0  # handed out by the sequence, in whatever state
+    seen: int = 0  # handed out by the source, in whatever state
     tracked: int = 0
     # reason -> frames: damaged, stalled (did not come in time), dropped, refused
     skipped: Counter[str] = field(default_factory=Counter)
+    statuses: Counter[str] = field(default_factory=Counter)  # of the others: ok, lost, ...
     warnings: list[str] = field(default_factory=list)
     first_tracked_at: float | None = None  # time.monotonic
     decode_spans: list[tuple[int, int, int]] = field(default_factory=list)  # begin us, duration us, frame
@@ -47,26 +36,27 @@ class Tally:
 class Session:
     """Feeds frames to a tracker until they end or `stop` says so; keeps count, never the frames.
 
-    slam: a `vsgraphs.Slam` or anything with its `track`. A frame that cannot be read or that the tracker
-    refuses is skipped and counted. What is lost and found again is told to the listener and kept as a
-    warning. Once `stop` says so no frame is begun; one that the tracker then hands back untracked was not.
+    slam: a `vsgraphs.Slam` or anything with its `track`. length: of the frames, if it is known. A frame that
+    cannot be read or that the tracker refuses is skipped and counted. What is lost and found again is told to
+    the listener and kept as a warning. Once `stop` says so no frame is begun; one that the tracker then hands
+    back untracked was not. tracked: called with each frame's TrackResult and timestamp.
     """
 
     def __init__(
         self,
         slam: Any,
         frames: Iterable[LoadedFrame],
-        stamps: Sequence[float],
         listener: Listener,
-        pacing: Pacing | None = None,
+        *,
+        length: int | None = None,
         stop: Callable[[], bool] = lambda: False,
+        tracked: Callable[[Any, float], object] = lambda *_: None,
     ) -> None:
         self._slam = slam
         self._frames = frames
-        self._stamps = stamps
         self._listener = listener
-        self._pacing = pacing or AsFastAsPossible()
-        self._stop = stop
+        self._length = length
+        self._stop, self._tracked = stop, tracked
         self._status = ""
         self._lost_since: float | None = None
         self.tally = Tally()
@@ -77,28 +67,28 @@ class Session:
         for frame in self._frames:
             if self._stop():
                 break
-            following = self._stamps[frame.index + 1] if frame.index + 1 < len(self._stamps) else None
-            admitted = self._pacing.admit(frame.timestamp, following)
-            if self._stop():
-                break
             tally.seen += 1
-            tally.decode_spans.append(
-                (int(frame.begin_s * 1e6), int((frame.end_s - frame.begin_s) * 1e6), frame.index)
-            )
+            self._note_loading(frame)
             if frame.error is not None:
                 reason = "stalled" if isinstance(frame.error, StalledError) else "damaged"
                 self._skip(reason, str(frame.error))
-            elif not admitted:
+            elif frame.dropped:
                 self._skip("dropped", None)
             elif not self._track(frame):
                 tally.seen -= 1
                 break
             self._listener.frame(tally, self._status)
-        tally.interrupted = self._stop() and tally.seen < len(self._stamps)
+        tally.interrupted = self._stop() and (self._length is None or tally.seen < self._length)
         dropped = tally.skipped["dropped"]
         if dropped:
             tally.warnings.append(f"{dropped} frames came while an earlier one was tracked, dropped")
         return tally
+
+    def _note_loading(self, frame: LoadedFrame) -> None:
+        if frame.rgb is None and frame.error is None:
+            return  # a camera's frame that nobody looked at
+        duration_us = int((frame.end_s - frame.begin_s) * 1e6)
+        self.tally.decode_spans.append((int(frame.begin_s * 1e6), duration_us, frame.index))
 
     def _track(self, frame: LoadedFrame) -> bool:
         """False if the tracker passed the frame over, as it was told to stop."""
@@ -114,11 +104,13 @@ class Session:
         elif self._stop():
             return False
         self._follow(str(result.status), frame)
+        self._tracked(result, frame.timestamp)
         return True
 
     def _follow(self, status: str, frame: LoadedFrame) -> None:
-        """Tells when tracking is lost and found."""
+        """Counts, and tells when tracking is lost and found."""
         self._status = status
+        self.tally.statuses[status] += 1
         if status == "lost" and self._lost_since is None:
             self._lost_since = frame.timestamp
             self._tell(f"lost at frame {frame.index} ({frame.timestamp:.3f} s)")

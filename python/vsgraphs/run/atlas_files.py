@@ -1,22 +1,22 @@
-"""Atlases of `vsgraphs run`: what a run starts from, and what it leaves for the next one."""
+"""Atlases of a run: what it starts from, and what it leaves for the next one."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vsgraphs.cli.atlas_target import AtlasTarget
 from vsgraphs.errors import InputError
 from vsgraphs.export.lock import Locks
+from vsgraphs.run.atlas_target import AtlasTarget
+from vsgraphs.run.listener import Listener
 
 if TYPE_CHECKING:
-    from vsgraphs.cli.run import RunRequest
+    from vsgraphs.run.request import RunRequest
 
 DEFAULT_NAME = "atlas.vsg"
 # The thread that saves gives way to tracking and mapping.
@@ -31,33 +31,29 @@ class AtlasFiles:
     target: AtlasTarget | None = None
     every_s: float | None = None
     warnings: list[str] = field(default_factory=list)
-    before_a_line: Callable[[], object] = lambda: None  # takes away what a progress line shows
+    listener: Listener = field(default_factory=Listener)
     _make: Callable[[Any], Any] = field(init=False, repr=False)  # a Slam -> its Atlas
     _saved: tuple[int, int] | None = None  # keyframes and version of the map when it was saved last
 
     @staticmethod
-    def of(request: RunRequest, locks: Locks) -> AtlasFiles:
+    def of(request: RunRequest, out: Path, locks: Locks, listener: Listener) -> AtlasFiles:
         """Of a request; checks what can be known before anything runs, and holds what will be written. Raises
         InputError.
         """
-        save_to = request.save_atlas
+        load = None if request.load_atlas is None else Path(request.load_atlas)
+        save_to = None if request.save_atlas is None else Path(request.save_atlas)
         if save_to is None and request.autosave_s is not None:
-            save_to = request.out / DEFAULT_NAME
-        if request.shortcuts.get("system.localise_only") and request.load_atlas is None:
+            save_to = out / DEFAULT_NAME
+        if request.localise_only and load is None:
             raise InputError("--localise-only needs maps to locate the camera in: give --load-atlas FILE")
         target = None
         if save_to is not None:
             from vsgraphs.compiled import core
 
             target = AtlasTarget.claim(
-                core(),
-                save_to,
-                request.load_atlas,
-                overwrite=request.overwrite,
-                keep=request.keep,
-                locks=locks,
+                core(), save_to, load, overwrite=request.overwrite, keep=request.keep, locks=locks
             )
-        return AtlasFiles(request.load_atlas, target, request.autosave_s)
+        return AtlasFiles(load, target, request.autosave_s, listener=listener)
 
     def start(self, core: Any, config: Any, camera: Any) -> Any:
         """A Slam, started from the loaded maps if there are any. Raises InputError where they do not fit."""
@@ -70,10 +66,10 @@ class AtlasFiles:
         if atlas.empty and config.get("system.localise_only"):
             raise InputError(f"{self.load}: holds an empty map: there is nothing to locate the camera in")
         if atlas.empty:
-            print(f"{self.load}: holds an empty map, starting anew", flush=True)
+            self.listener.note(f"{self.load}: holds an empty map, starting anew")
             return core.Slam(config, camera)
         atlas.require_fit(config, camera, str(self.load))
-        print(f"{self.load}: {_told(atlas)}", flush=True)
+        self.listener.note(f"{self.load}: {_told(atlas)}")
         return core.Slam(config, camera, atlas.state)
 
     @contextlib.contextmanager
@@ -97,23 +93,20 @@ class AtlasFiles:
             return
         atlas = self._make(slam)
         if atlas.empty and self.target.occupied():
-            self.before_a_line()
-            print(f"{self.target.path}: left as it is, since this run has mapped nothing", flush=True)
+            self.listener.note(f"{self.target.path}: left as it is, since this run has mapped nothing")
             return
         try:
-            self._tell_moved(self.target.save(atlas), _warn)
+            self._tell_moved(self.target.save(atlas), self._warn)
         except Exception as error:
             wanted = self.target.path
             try:
                 self.target.save_beside(atlas)
             except Exception:
                 raise error from None
-            self.before_a_line()
-            _warn(f"{error}; saved in another file instead of {wanted}")
+            self._warn(f"{error}; saved in another file instead of {wanted}")
         size_mb = self.target.path.stat().st_size / 1e6
         what = "an empty map" if atlas.empty else _told(atlas)
-        self.before_a_line()
-        print(f"saved in {self.target.path}: {what}, {size_mb:.1f} MB", flush=True)
+        self.listener.note(f"saved in {self.target.path}: {what}, {size_mb:.1f} MB")
 
     @property
     def save_to(self) -> Path | None:
@@ -132,6 +125,9 @@ class AtlasFiles:
         except Exception:
             return False
         return True
+
+    def _warn(self, line: str) -> None:
+        self.listener.event(f"warning: {line}")
 
     def _tell_moved(self, line: str | None, tell: Callable[[str], None]) -> None:
         if line is not None:
@@ -158,10 +154,6 @@ class AtlasFiles:
         if self.target is not None:
             self._tell_moved(self.target.save(atlas), tell)
         self._saved = now
-
-
-def _warn(line: str) -> None:
-    print(f"warning: {line}", file=sys.stderr, flush=True)
 
 
 def _told(atlas: Any) -> str:

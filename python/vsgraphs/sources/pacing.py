@@ -1,28 +1,12 @@
-"""How fast frames are fed: as fast as possible, or as a live camera would deliver them."""
+"""Recorded frames at the pace of their timestamps, as a live camera would deliver them."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from typing import Protocol
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
-
-class Pacing(Protocol):
-    """Decides whether a frame is tracked, and waits until it may be."""
-
-    def admit(self, timestamp: float, following: float | None) -> bool:
-        """Waits until a frame is there; False if it must be dropped. `following`: the next frame's
-        timestamp.
-        """
-        ...
-
-
-class AsFastAsPossible:
-    """Never waits, never drops."""
-
-    def admit(self, timestamp: float, following: float | None) -> bool:  # noqa: ARG002
-        """Always True."""
-        return True
+from vsgraphs.sources.loaded import LoadedFrame
 
 
 class Realtime:
@@ -42,6 +26,12 @@ class Realtime:
         self._clock = clock
         self._sleep = sleep
         self._offset: float | None = None  # clock - timestamp
+
+    def paced(self, frames: Iterable[LoadedFrame]) -> Iterator[LoadedFrame]:
+        """The frames, each at its time; those that come too late are marked as dropped."""
+        for frame in frames:
+            admitted = self.admit(frame.timestamp, frame.following)
+            yield frame if admitted else replace(frame, dropped=True)
 
     def admit(self, timestamp: float, following: float | None) -> bool:
         """Waits for the frame's time; False when it is already past the following frame's."""

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vsgraphs.run.session import Tally
 
 # What a run writes, in the order in which people want to know of it.
 RESULT_FILES = (
@@ -38,7 +41,10 @@ def summarise(report: dict[str, Any], out: Path) -> str:
         lines.append(f"found {found}")
     lines += not_sought(report)
     lines += [f"warning: {line}" for line in what_is_missing(report)]
-    files = [name for name in RESULT_FILES if (out / name).is_file()]
+    checks = report.get("checks", {})
+    lines += [f"warning: {name}: {line}" for name, found in checks.items() for line in found]
+    names = (*RESULT_FILES, *report.get("exported", ()))
+    files = [name for name in names if (out / name).is_file()]
     return "\n".join([*lines, f"results in {out}: {' '.join(files)}"])
 
 
@@ -147,3 +153,15 @@ def _missing_frames(report: dict[str, Any]) -> list[str]:
             "Lead the camera back to a place it has seen."
         )
     return lines
+
+
+def nothing_tracked(source: str, tally: Tally) -> str:
+    """Why a run ended without a single pose, in one line."""
+    unusable = tally.skipped["damaged"] + tally.skipped["stalled"] + tally.skipped["refused"]
+    if tally.seen and unusable == tally.seen:
+        first = tally.warnings[0].removeprefix("skipped: ") if tally.warnings else "unknown"
+        return f"none of the {tally.seen} frames of {source} can be used; the first: {first}"
+    return (
+        f"no frame of {source} could be tracked ({tally.seen - unusable} of {tally.seen} readable): "
+        "too little depth or texture to start a map; check the depth images and depth_scale"
+    )

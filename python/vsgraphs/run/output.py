@@ -5,13 +5,12 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
-import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
-from vsgraphs.cli.summary import RESULT_FILES
 from vsgraphs.errors import InputError
 from vsgraphs.reading import read_json
+from vsgraphs.run.summary import RESULT_FILES
 
 _SUFFIX = "_vsgraphs"
 _LONGEST = 200  # bytes of a name; file systems take 255
@@ -19,7 +18,7 @@ _LONGEST = 200  # bytes of a name; file systems take 255
 
 @contextlib.contextmanager
 def results_folder(out: Path | None, source: Path) -> Iterator[Path]:
-    """The directory the user named, or else a new one named after the sequence, in the working directory.
+    """The directory the user named, or else a new one named after the source, in the working directory.
 
     A new one that stays empty is removed in the end. Raises InputError where it cannot be created.
     """
@@ -69,10 +68,10 @@ def holds_a_trajectory(out: Path) -> bool:
     return not isinstance(report, dict) or report.get("tracked") != 0
 
 
-def remove_earlier(out: Path, written: Collection[str]) -> None:
+def remove_earlier(out: Path, written: Collection[str], tell: Callable[[str], object]) -> None:
     """Removes what an earlier run left in `out` and this one does not write, as nobody could tell them apart.
 
-    Only where a run.json says that there was a run; nothing but a run's own files.
+    Only where a run.json says that there was a run; nothing but a run's own files. tell: what was removed.
     """
     if not (out / "run.json").is_file():
         return
@@ -81,4 +80,4 @@ def remove_earlier(out: Path, written: Collection[str]) -> None:
         with contextlib.suppress(OSError):
             (out / name).unlink()
     if stale:
-        print(f"removed from {out}, of an earlier run: {', '.join(stale)}", file=sys.stderr, flush=True)
+        tell(f"removed from {out}, of an earlier run: {', '.join(stale)}")
