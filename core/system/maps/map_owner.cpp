@@ -13,8 +13,10 @@ constexpr char adjustment_name[] = "adjustment of the whole map";
 
 }  // namespace
 
-MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known)
+MapOwner::MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known,
+                   std::shared_ptr<MapListener> listener)
     : options_(config.system),
+      listener_(std::move(listener)),
       guard_(config.system.stop_on_fault),
       snapshot_(map_.snapshot()),
       mapper_(config.mapper, camera, config.orb.pyramid(), config.factors),
@@ -72,6 +74,7 @@ void MapOwner::insert(const KeyframeRequest& request) {
   ++inserted_;
   ++made_;
   apply(edit, {EditEvent::Kind::insert, request.frame_index, 0, 0});
+  tell([this](MapListener& listener) { listener.keyframe_made(newest_, snapshot_); });
 }
 
 void MapOwner::find_planes() {
@@ -137,6 +140,10 @@ void MapOwner::look_for_loop() {
 void MapOwner::tally(LoopTally& kind, const LoopReport& report, const Map& there) {
   kind.add(report, *snapshot_, there);
   published_tallies_ = std::make_shared<const LoopTallies>(tallies_);
+  if (!report.place.valid()) return;
+  const bool accepted = report.verdict == LoopVerdict::closed || report.verdict == LoopVerdict::joined;
+  const LoopDecision decision{report, accepted, &kind == &tallies_.joins};
+  tell([&](MapListener& listener) { listener.loop_decided(decision, snapshot_); });
 }
 
 void MapOwner::close_loop() {
@@ -229,7 +236,17 @@ void MapOwner::find_rooms(bool last) {
     edit = structure_.propose(snapshot_, *space, *surfaces, newest_s_, &scene_spans_);
   });
   if (!found) return;
+  const Snapshot before = snapshot_;
   apply(edit, {last ? EditEvent::Kind::rooms_last : EditEvent::Kind::rooms, newest_frame_, 0, 0});
+  tell_of_rooms(*before);
+}
+
+// Numbers are never given again.
+void MapOwner::tell_of_rooms(const Map& before) {
+  for (const FoundRoom& room : snapshot_->structure().rooms) {
+    if (room.number >= before.structure().next_number)
+      tell([&](MapListener& listener) { listener.room_found(room.number, snapshot_); });
+  }
 }
 
 void MapOwner::refine(const std::function<bool()>& stop) {

@@ -12,6 +12,7 @@
 #include "core/mapping/local_mapper.h"
 #include "core/system/config/config.h"
 #include "core/system/maps/followers.h"
+#include "core/system/maps/map_listener.h"
 #include "core/system/maps/markers.h"
 #include "core/system/maps/schedule.h"
 #include "core/system/maps/snapshot_cell.h"
@@ -24,8 +25,9 @@ namespace vsgraphs {
 
 class MapOwner {
  public:
-  // The last of `known` is worked on; maps without keyframes are none.
-  MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known = {});
+  // The last of `known` is worked on; maps without keyframes are none. `listener` may be null.
+  MapOwner(const Config& config, const Camera& camera, SnapshotCell& cell, const AtlasState& known = {},
+           std::shared_ptr<MapListener> listener = nullptr);
 
   // All that a keyframe brings about, in the order of the steps below; `stop_refining` is asked between iterations of the
   // window's adjustment. Afterwards adjustment() is what the executor has to run, here or beside. Once `stop` says so, what
@@ -115,11 +117,18 @@ class MapOwner {
   void open_new_map(std::int64_t frame);
   void publish_dormant();
   void tally(LoopTally& kind, const LoopReport& report, const Map& there);
+  // `call` is given the listener, if there is one.
+  template <typename Call>
+  void tell(const Call& call) {
+    if (listener_) guard_.run("listening to the map", [&] { call(*listener_); });
+  }
+  void tell_of_rooms(const Map& before);
   void adjust_from_here();
   void drop_adjustment();
   void note_moves(const MapEdit& loop);
 
   SystemOptions options_;
+  std::shared_ptr<MapListener> listener_;
   StageGuard guard_;
   Map map_;
   Snapshot snapshot_;

@@ -8,6 +8,7 @@
 #include "core/map/label_grid.h"
 #include "core/matching/messages.h"
 #include "core/system/config/config.h"
+#include "core/system/maps/map_listener.h"
 #include "core/system/maps/markers.h"
 #include "core/system/maps/schedule.h"
 #include "core/system/maps/snapshot_cell.h"
@@ -43,13 +44,16 @@ class Executor {
   virtual Schedule schedule() const = 0;
 };
 
-// `known`: what the run starts from; see MapOwner.
+// `known`: what the run starts from; `listener` may be null; see MapOwner.
 std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera,
-                                               const AtlasState& known);
+                                               const AtlasState& known,
+                                               std::shared_ptr<MapListener> listener);
 std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera,
-                                                 const AtlasState& known);
+                                                 const AtlasState& known,
+                                                 std::shared_ptr<MapListener> listener);
 // Follows config.system.replay. track() and finish() throw RunError when the run departs from it.
 std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera,
-                                                  const AtlasState& known);
+                                                  const AtlasState& known,
+                                                  std::shared_ptr<MapListener> listener);
 
 }  // namespace vsgraphs

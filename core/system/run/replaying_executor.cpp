@@ -15,10 +15,11 @@ namespace {
 // Serial, but each frame sees the map version it saw in the recorded run.
 class ReplayingExecutor : public Executor {
  public:
-  ReplayingExecutor(const Config& config, const Camera& camera, const AtlasState& known)
+  ReplayingExecutor(const Config& config, const Camera& camera, const AtlasState& known,
+                    std::shared_ptr<MapListener> listener)
       : schedule_(Schedule::read(config.system.replay)),
         tracking_(config, camera),
-        owner_(config, camera, cell_, known) {}
+        owner_(config, camera, cell_, known, std::move(listener)) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     if (stopped_ || next_frame_ >= schedule_.frames.size()) return std::nullopt;
@@ -157,8 +158,9 @@ class ReplayingExecutor : public Executor {
 }  // namespace
 
 std::unique_ptr<Executor> make_replaying_executor(const Config& config, const Camera& camera,
-                                                  const AtlasState& known) {
-  return std::make_unique<ReplayingExecutor>(config, camera, known);
+                                                  const AtlasState& known,
+                                                  std::shared_ptr<MapListener> listener) {
+  return std::make_unique<ReplayingExecutor>(config, camera, known, std::move(listener));
 }
 
 }  // namespace vsgraphs

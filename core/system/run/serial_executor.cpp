@@ -11,8 +11,11 @@ namespace {
 
 class SerialExecutor : public Executor {
  public:
-  SerialExecutor(const Config& config, const Camera& camera, const AtlasState& known)
-      : options_(config.system), tracking_(config, camera), owner_(config, camera, cell_, known) {}
+  SerialExecutor(const Config& config, const Camera& camera, const AtlasState& known,
+                 std::shared_ptr<MapListener> listener)
+      : options_(config.system),
+        tracking_(config, camera),
+        owner_(config, camera, cell_, known, std::move(listener)) {}
 
   std::optional<TrackedFrame> track(const RgbdFrame& frame) override {
     if (stopped_) return std::nullopt;
@@ -59,8 +62,9 @@ class SerialExecutor : public Executor {
 }  // namespace
 
 std::unique_ptr<Executor> make_serial_executor(const Config& config, const Camera& camera,
-                                               const AtlasState& known) {
-  return std::make_unique<SerialExecutor>(config, camera, known);
+                                               const AtlasState& known,
+                                               std::shared_ptr<MapListener> listener) {
+  return std::make_unique<SerialExecutor>(config, camera, known, std::move(listener));
 }
 
 }  // namespace vsgraphs

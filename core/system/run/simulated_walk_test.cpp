@@ -2,7 +2,11 @@
 // run goes on and when it has ended, and a second session goes on with it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
+#include <stdexcept>
 
 #include "core/simulate/renderer.h"
 #include "core/simulate/testing.h"
@@ -15,7 +19,7 @@ namespace {
 
 class SimulatedWalk {
  public:
-  SimulatedWalk() : scene_(build_scene(plan())), renderer_(scene_, camera(), NoiseOptions{}) {}
+  SimulatedWalk() : scene_(build_scene(plan())), renderer_(scene_, camera(), NoiseOptions::none()) {}
 
   static Camera camera() {
     Camera camera = testing::small_camera();
@@ -59,7 +63,7 @@ class SimulatedWalk {
   static Plan plan() {
     Plan plan = testing::two_rooms_plan();
     plan.fps = 5;
-    plan.path.turn_rate = 14;
+    plan.path.turn_rate = 25;
     for (const char* room : {"A", "B"}) {
       for (int wall = 0; wall < 4; ++wall) {
         for (const double along : {0.5, 1.25, 2.0, 2.75, 3.5}) {
@@ -74,9 +78,15 @@ class SimulatedWalk {
       }
     }
     plan.path.waypoints.clear();
-    const std::vector<Eigen::Vector2d> way{{1, 2}, {4, 2}, {6.8, 2}, {7.4, 2.2}, {6.8, 2}, {4, 2}, {1.5, 2}};
+    // Through the door, all around, and back.
+    const std::vector<Eigen::Vector3d> way{{1.2, 2, 0},   {4, 2, 0},     {7.2, 2, 0},   {7.2, 2, 120},
+                                           {7.2, 2, 240}, {7.2, 2, 300}, {7.2, 2, 180}, {4, 2, 180},
+                                           {2.5, 2, 180}, {2.5, 2, 60},  {2.5, 2, -60}};
     plan.path.waypoints.resize(way.size());
-    for (std::size_t i = 0; i < way.size(); ++i) plan.path.waypoints[i].at = way[i];
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      plan.path.waypoints[i].at = way[i].head<2>();
+      plan.path.waypoints[i].yaw_deg = way[i].z();
+    }
     return plan;
   }
 
@@ -89,9 +99,32 @@ void expect_followers_like_gathered(const Slam& slam) {
     test::expect_followers_like_gathered(state, SimulatedWalk::config(), SimulatedWalk::camera());
 }
 
+class Told : public MapListener {
+ public:
+  void keyframe_made(KeyframeId keyframe, const Snapshot& map) override {
+    EXPECT_TRUE(map->keyframes().contains(keyframe));
+    ++keyframes;
+  }
+  void room_found(RoomNumber room, const Snapshot& map) override {
+    const auto& rooms = map->structure().rooms;
+    EXPECT_TRUE(
+        std::any_of(rooms.begin(), rooms.end(), [room](const FoundRoom& r) { return r.number == room; }));
+    EXPECT_TRUE(found.insert(room).second) << "told once";
+  }
+  void loop_decided(const LoopDecision& decision, const Snapshot& map) override {
+    EXPECT_TRUE(map->keyframes().contains(decision.report.keyframe));
+    ++decided;
+    joined += decision.accepted && decision.of_maps;
+  }
+
+  int keyframes = 0, decided = 0, joined = 0;
+  std::set<RoomNumber> found;
+};
+
 TEST(SimulatedWalk, WhatFollowsTheMapIsWhatWouldBeGathered) {
   const SimulatedWalk walk;
-  Slam slam(SimulatedWalk::config(), SimulatedWalk::camera());
+  const auto told = std::make_shared<Told>();
+  Slam slam(SimulatedWalk::config(), SimulatedWalk::camera(), {}, told);
   for (int i = 0; i < walk.frames(); ++i) {
     const TrackStatus status = walk.show(i, i, slam);
     EXPECT_TRUE(status == TrackStatus::ok || status == TrackStatus::initialised) << i;
@@ -99,6 +132,9 @@ TEST(SimulatedWalk, WhatFollowsTheMapIsWhatWouldBeGathered) {
   }
   slam.finish();
   expect_followers_like_gathered(slam);
+
+  EXPECT_EQ(told->found.size(), slam.snapshot()->structure().next_number);
+  EXPECT_FALSE(told->found.empty());
 
   const AtlasState known = slam.atlas_state();
   ASSERT_EQ(known.maps.size(), 1U);
@@ -113,10 +149,16 @@ TEST(SimulatedWalk, WhatFollowsTheMapIsWhatWouldBeGathered) {
   expect_followers_like_gathered(again);
 }
 
+class Deaf : public MapListener {
+ public:
+  void keyframe_made(KeyframeId, const Snapshot&) override { throw std::runtime_error("not now"); }
+};
+
 // Carried in the dark from the first room into the second, and walked back into the first.
 TEST(SimulatedWalk, AfterAJoinToo) {
   const SimulatedWalk walk;
-  Slam slam(SimulatedWalk::config(), SimulatedWalk::camera());
+  const auto told = std::make_shared<Told>();
+  Slam slam(SimulatedWalk::config(), SimulatedWalk::camera(), {}, told);
   std::int64_t index = 0;
   for (int i = 0; i < 30; ++i) walk.show(i, index++, slam);
   for (int i = 0; i < 20; ++i) SimulatedWalk::show_darkness(index++, slam);
@@ -124,6 +166,21 @@ TEST(SimulatedWalk, AfterAJoinToo) {
   slam.finish();
   EXPECT_EQ(slam.statistics().merges, 1);
   expect_followers_like_gathered(slam);
+  EXPECT_EQ(told->joined, 1);
+  EXPECT_GT(told->decided, 1);
+  EXPECT_GT(told->keyframes, 10);
+}
+
+TEST(SimulatedWalk, AListenerThatFailsIsToldNothingMore) {
+  const SimulatedWalk walk;
+  Config config = SimulatedWalk::config();
+  config.system.stop_on_fault = false;
+  Slam slam(config, SimulatedWalk::camera(), {}, std::make_shared<Deaf>());
+  for (int i = 0; i < 5; ++i) walk.show(i, i, slam);
+  slam.finish();
+  EXPECT_GT(slam.snapshot()->keyframes().size(), 0U);
+  ASSERT_EQ(slam.statistics().warnings.size(), 1U);
+  EXPECT_NE(slam.statistics().warnings[0].find("not now"), std::string::npos);
 }
 
 }  // namespace

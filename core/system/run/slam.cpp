@@ -19,14 +19,17 @@ bool has_keyframes(const AtlasState& known) {
                      [](const MapState& m) { return m.map->keyframes().size() > 0; });
 }
 
-std::unique_ptr<Executor> make_executor(const Config& config, const Camera& camera, const AtlasState& known) {
+std::unique_ptr<Executor> make_executor(const Config& config, const Camera& camera, const AtlasState& known,
+                                        std::shared_ptr<MapListener> listener) {
   camera.validate();
   config.validate();
   require_input(!config.system.localise_only || has_keyframes(known),
                 "system.localise_only needs a map to locate the camera in; load an atlas that holds one");
-  if (!config.system.replay.empty()) return make_replaying_executor(config, camera, known);
-  if (config.system.execution == "serial") return make_serial_executor(config, camera, known);
-  return make_threaded_executor(config, camera, known);
+  if (!config.system.replay.empty())
+    return make_replaying_executor(config, camera, known, std::move(listener));
+  if (config.system.execution == "serial")
+    return make_serial_executor(config, camera, known, std::move(listener));
+  return make_threaded_executor(config, camera, known, std::move(listener));
 }
 
 // Frames of this run come after those of all others that went into the maps.
@@ -66,11 +69,12 @@ std::vector<TimedPose> poses_in(const Map& map, const FrameRecords::View& record
 
 Slam::Slam(const Config& config, const Camera& camera) : Slam(config, camera, AtlasState{}) {}
 
-Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known)
+Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known,
+           std::shared_ptr<MapListener> listener)
     : process_(::getpid()),
       config_(config),
       camera_(camera),
-      executor_(make_executor(config, camera, known)),
+      executor_(make_executor(config, camera, known, std::move(listener))),
       loaded_(known.loaded),
       first_index_(first_index_after(known)),
       last_timestamp_s_(-std::numeric_limits<double>::infinity()),

@@ -47,7 +47,9 @@ class Slam {
   // Starts from maps made before (none: as above): the camera begins lost, is looked for in them, and starts a map of its own
   // where it is not found; the two are joined where a place is recognised. Frames are counted on from the last keyframe's.
   // With system.localise_only the maps stay as they are. Throws InputError where that is asked for without a map.
-  Slam(const Config& config, const Camera& camera, const AtlasState& known);
+  // `listener` (may be null) is told of keyframes, rooms and loops, on the thread that maps.
+  Slam(const Config& config, const Camera& camera, const AtlasState& known,
+       std::shared_ptr<MapListener> listener = nullptr);
   ~Slam();
 
   // Tracks one frame; the images are read during the call only. One caller at a time. Throws InputError for a

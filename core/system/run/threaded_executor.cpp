@@ -20,10 +20,11 @@ namespace {
 // The caller's thread tracks; one worker owns the map; a third thread adjusts the whole map when a loop was closed.
 class ThreadedExecutor : public Executor {
  public:
-  ThreadedExecutor(const Config& config, const Camera& camera, const AtlasState& known)
+  ThreadedExecutor(const Config& config, const Camera& camera, const AtlasState& known,
+                   std::shared_ptr<MapListener> listener)
       : options_(config.system),
         tracking_(config, camera),
-        owner_(config, camera, cell_, known),
+        owner_(config, camera, cell_, known, std::move(listener)),
         requests_(queue_capacity),
         background_([this] { requests_.try_push({}); }) {
     worker_ = std::thread([this] { work(); });
@@ -184,8 +185,9 @@ class ThreadedExecutor : public Executor {
 }  // namespace
 
 std::unique_ptr<Executor> make_threaded_executor(const Config& config, const Camera& camera,
-                                                 const AtlasState& known) {
-  return std::make_unique<ThreadedExecutor>(config, camera, known);
+                                                 const AtlasState& known,
+                                                 std::shared_ptr<MapListener> listener) {
+  return std::make_unique<ThreadedExecutor>(config, camera, known, std::move(listener));
 }
 
 }  // namespace vsgraphs
