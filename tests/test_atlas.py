@@ -23,6 +23,9 @@ from vsgraphs.trajectory import read_tum_trajectory
 COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors", "markers", "maps")
 
 
+NEWEST = 4  # version of the atlas format
+
+
 @pytest.fixture(scope="module")
 def walked(recorded: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The directory of a run along the wall that left atlas.vsg."""
@@ -47,7 +50,7 @@ def test_info_counts_what_the_run_counted(walked: Path, vsgraphs: Program) -> No
     assert info["maps"] == len(info["each"]) == 1
     assert (info["keyframes"], info["landmarks"]) == (run["keyframes"], run["landmarks"])
     assert (info["planes"], info["rooms"]) == (run["scene"]["planes"], run["scene"]["rooms"])
-    assert info["format"] == 3
+    assert info["format"] == NEWEST
     assert (info["program"], info["commit"]) == (run["versions"]["vsgraphs"], run["commit"])
     assert (info["camera"]["width"], info["camera"]["fx"]) == (320, 300.0)
     assert info["mode"] == "full"
@@ -224,14 +227,15 @@ def test_files_that_are_no_atlas(recorded: Path, walked: Path, tmp_path: Path, v
     cut.write_bytes(whole[: len(whole) // 2])
     changed.write_bytes(whole[:5000] + bytes([whole[5000] ^ 1]) + whole[5001:])
     other.write_text("timestamp tx ty tz qx qy qz qw\n" * 10)
-    newer.write_bytes(_of_version(whole, 4))
+    newer.write_bytes(_of_version(whole, NEWEST + 1))
     for path, message in (
         (cut, "is damaged (it ends too early)"),
         (changed, "has changed)"),
         (other, "is no vsgraphs atlas"),
         (
             newer,
-            "was saved in version 4 of the atlas format, and this vsgraphs reads up to version 3; update",
+            f"was saved in version {NEWEST + 1} of the atlas format, and this vsgraphs reads up to version {NEWEST}; "
+            "update",
         ),
         (tmp_path / "missing", "cannot read"),
         (tmp_path, "it is a folder"),

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import fake_core
@@ -105,9 +106,16 @@ def test_stop_ends_it_with_results(recorded: Path, tmp_path: Path, fake: fake_co
     assert (result.info["tracked"], result.interrupted, fake.stopped) == (7, True, True)
 
 
-def test_ctrl_c_keeps_results_and_the_handler(
-    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fake: fake_core.Slam
-) -> None:
+@pytest.fixture
+def listening() -> Iterator[None]:
+    """Ctrl-C is heard, as it is not in a program that a shell started in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("listening")
+def test_ctrl_c_keeps_results_and_the_handler(recorded: Path, tmp_path: Path, fake: fake_core.Slam) -> None:
     before = signal.getsignal(signal.SIGINT)
 
     def interrupt(progress: Progress) -> None:
@@ -121,6 +129,7 @@ def test_ctrl_c_keeps_results_and_the_handler(
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.usefixtures("listening")
 def test_a_second_ctrl_c_is_a_keyboard_interrupt(
     recorded: Path, tmp_path: Path, fake: fake_core.Slam
 ) -> None:
