@@ -234,8 +234,8 @@ def test_files_that_are_no_atlas(recorded: Path, walked: Path, tmp_path: Path, v
         (other, "is no vsgraphs atlas"),
         (
             newer,
-            f"was saved in version {NEWEST + 1} of the atlas format, and this vsgraphs reads up to version {NEWEST}; "
-            "update",
+            f"was saved in version {NEWEST + 1} of the atlas format, and this vsgraphs reads up to version "
+            f"{NEWEST}; update",
         ),
         (tmp_path / "missing", "cannot read"),
         (tmp_path, "it is a folder"),
