@@ -212,7 +212,7 @@ void bind_slam(nb::module_& m) {
           "    is. With system.localise_only the maps stay as they are.\n"
           "  realtime: True for a live camera: track() never waits for mapping, and answers within "
           "milliseconds.\n"
-          "    False for a recording: track() waits where mapping lags, so that results do not hang on how "
+          "    False for a recording: track() waits where mapping lags, so that results do not depend on how "
           "fast the\n"
           "    machine is; that can take seconds. None: as config says (system.realtime, by default "
           "False).\n\n"

@@ -25,7 +25,7 @@ namespace vsgraphs {
 
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t start = 0xcbf29ce484222325ULL);
 
-// The header's checksum, which hangs on that of every section: the same for the same content, another for any other. Told by the
+// The header's checksum, which depends on that of every section: the same for the same content, another for any other. Told by the
 // first `identity_bytes` of a file; 0 if there are fewer.
 inline constexpr std::size_t identity_bytes = 24;
 std::uint64_t archive_identity(std::span<const std::byte> beginning);

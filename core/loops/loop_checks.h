@@ -25,18 +25,21 @@ struct LoopCheckOptions {
 
 template <typename Visitor>
 void describe(LoopCheckOptions& o, Visitor& field) {
-  field("max_tilt_deg", o.max_tilt_deg, 0.1, 45.0, "most that a loop may turn the up direction");
-  field("same_angle_deg", o.same_angle_deg, 1.0, 45.0, "angle between two sights of one surface");
-  field("same_offset_m", o.same_offset_m, 0.01, 1.0, "distance between two sights of one surface");
+  field("max_tilt_deg", o.max_tilt_deg, 0.1, 45.0,
+        "largest change of the up direction that a loop may bring, in degrees");
+  field("same_angle_deg", o.same_angle_deg, 1.0, 45.0,
+        "largest angle between two observations of one surface, in degrees, when a loop is checked");
+  field("same_offset_m", o.same_offset_m, 0.01, 1.0,
+        "largest distance between two observations of one surface, in metres, when a loop is checked");
   field("max_disagreeing_share", o.max_disagreeing_share, 0.0, 1.0,
-        "share of the surface seen from both sides that may disagree when a loop closes");
+        "largest share of the surface seen from both ends of a loop that may disagree");
   field("max_seen_through_share", o.max_seen_through_share, 0.0, 1.0,
-        "share of a side's surfaces that may stand where the other side looked through");
+        "largest share of the surfaces at one end of a loop that the other end may have looked through");
   field("max_contradicted_share", o.max_contradicted_share, 0.0, 1.0,
-        "share of all surfaces of two maps that may stand where the other one was looked through when the "
-        "maps are joined");
+        "largest share of all surfaces of two maps that the other map may have looked through when they are "
+        "joined");
   field("max_drift_sigmas", o.max_drift_sigmas, 1.0, 100.0,
-        "standard deviations of drift that a loop may take back");
+        "largest correction by a loop, in standard deviations of the expected drift");
 }
 
 // A planar piece where it stands in the world.

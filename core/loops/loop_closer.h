@@ -36,13 +36,18 @@ struct LoopCloserOptions {
 
 template <typename Visitor>
 void describe(LoopCloserOptions& o, Visitor& field) {
-  field("min_gap_keyframes", o.min_gap_keyframes, 1, 1000, "keyframes between a loop's two ends, at least");
-  field("max_candidates", o.max_candidates, 1, 20, "places a keyframe is compared with");
+  field("min_gap_keyframes", o.min_gap_keyframes, 1, 1000,
+        "smallest number of keyframes between the two ends of a loop");
+  field("max_candidates", o.max_candidates, 1, 20,
+        "number of similar places that each keyframe is compared with");
   field("min_score", o.min_score, 0.0, 1.0,
-        "similarity in the place index below which nothing was recognised");
-  field("pause_keyframes", o.pause_keyframes, 0, 100, "keyframes after a loop that look for none");
-  field("place_keyframes", o.place_keyframes, 1, 50, "keyframes that make up a place");
-  field("neighbours", o.neighbours, 1, 20, "neighbours of a keyframe that are asked to support a loop");
+        "lowest similarity, 0 to 1, at which the place index counts a place as recognised");
+  field("pause_keyframes", o.pause_keyframes, 0, 100,
+        "number of keyframes after a loop that look for no other loop");
+  field("place_keyframes", o.place_keyframes, 1, 50,
+        "number of neighbouring keyframes that make up one end of a loop");
+  field("neighbours", o.neighbours, 1, 20,
+        "number of neighbours of a keyframe that are asked whether they confirm its loop");
 }
 
 // How far a candidate came; the checks in the order they are made.

@@ -22,17 +22,19 @@ struct LoopCorrectionOptions {
 
 template <typename Visitor>
 void describe(LoopCorrectionOptions& o, Visitor& field) {
-  field("iterations", o.iterations, 1, 500, "iterations of the pose graph that spreads a loop's correction");
+  field("iterations", o.iterations, 1, 500,
+        "iterations of the pose graph that spreads a loop's correction over the keyframes");
   field("negligible_m", o.negligible_m, 0.0, 1.0,
-        "a loop that is off by less moves nothing: its landmarks are merged and local mapping does the rest");
-  field("negligible_deg", o.negligible_deg, 0.0, 45.0, "the same for the angle");
+        "a loop that corrects less than this, in metres, moves no keyframe; its landmarks are merged");
+  field("negligible_deg", o.negligible_deg, 0.0, 45.0,
+        "a loop that turns by less than this, in degrees, moves no keyframe; its landmarks are merged");
 }
 
 // The pose graph's optimum with the loop in it. The oldest keyframe stays.
 Corrections spread_correction(const Map& map, const KeyframeGraph& graph, const LoopAlignment& loop,
                               KeyframeId place, const LoopCorrectionOptions& options, SolveReport& report);
 
-// Moves keyframes and all that hangs on them (core/map/carry.h).
+// Moves keyframes and all that is anchored to them (core/map/carry.h).
 void move_map(const Corrections& corrections, Draft& draft);
 
 // What the keyframe sees of the place becomes one with what it had made of it itself.

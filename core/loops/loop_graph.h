@@ -25,18 +25,19 @@ struct DriftOptions {
 template <typename Visitor>
 void describe(DriftOptions& o, Visitor& field) {
   field("step_m", o.step_m, 1e-4, 1.0,
-        "noise of one keyframe's position as seen from its neighbour, one sigma");
-  field("step_deg", o.step_deg, 1e-3, 45.0, "noise of one keyframe's orientation as seen from its neighbour");
-  field("share_of_way", o.share_of_way, 0.0, 1.0, "drift of the position as a share of the way, one sigma");
+        "standard deviation of a keyframe's position relative to its neighbour, in metres");
+  field("step_deg", o.step_deg, 1e-3, 45.0,
+        "standard deviation of a keyframe's orientation relative to its neighbour, in degrees");
+  field("share_of_way", o.share_of_way, 0.0, 1.0,
+        "standard deviation of the position's drift, as a share of the distance travelled");
   field("turn_deg_per_m", o.turn_deg_per_m, 0.0, 45.0,
-        "drift of the orientation per metre of way, one sigma");
+        "standard deviation of the orientation's drift, in degrees per metre travelled");
   field("share_of_turn", o.share_of_turn, 0.0, 1.0,
-        "drift of the orientation as a share of the turning done");
+        "standard deviation of the orientation's drift, as a share of the angle turned");
   field("link_share", o.link_share, 0.0, 1.0,
-        "drift as a share of the step where a tracked link alone ties two keyframes: surfaces slide along "
-        "themselves");
+        "drift as a share of the step between two keyframes that surfaces alone connect");
   field("gap_share", o.gap_share, 0.01, 1.0,
-        "drift as a share of the step where nothing ties two keyframes that follow each other");
+        "drift as a share of the step between two consecutive keyframes that nothing connects");
 }
 
 struct KeyframeEdge {

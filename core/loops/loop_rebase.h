@@ -10,7 +10,7 @@ namespace vsgraphs {
 // What the edit moved stands where the edit put it: it weighed the whole map, and what was worked out since for parts of it, on
 // the ground of the old one, gives way (added up, the two would correct one error twice). Landmarks, planes and markers follow the
 // first keyframe that observed them and lives on. What was made since is carried by the correction of the
-// keyframe it hangs on (tracked link, else most shared landmarks). Ids that were merged away are followed, those that
+// keyframe it is anchored to (tracked link, else most shared landmarks). Ids that were merged away are followed, those that
 // vanished drop out; rooms that were found or moved since stay where they are.
 //
 // `moved`, by keyframe index, is what loops have moved keyframes by since, world from world (empty: nothing): what the edit put

@@ -17,12 +17,13 @@ MoveMarker moved(MarkerId id, const MappedMarker& marker, const Se3& by);
 // By keyframe index: what moves the keyframe and its surroundings, world from world. Identity where there is no keyframe.
 using Corrections = std::vector<Se3>;
 
-// The living keyframe something hangs on; empty if none is left. A landmark hangs on the first keyframe that observes it, a
+// The living keyframe something is anchored to; empty if none is left. A landmark is anchored to the first keyframe that observes it, a
 // marker on the first one, or its anchor, that saw it where it hangs.
 std::optional<KeyframeId> carrier_of(const Landmark& landmark);
 std::optional<KeyframeId> carrier_of(const Map& map, const MappedMarker& marker);
 
-// Where things end up that hang on keyframes of `map` which are corrected. Refers to both; empty where nothing holds a thing.
+// Where things that are anchored to keyframes of `map` end up when those are corrected. Refers to both arguments; empty for a thing
+// that no living keyframe holds.
 class Carry {
  public:
   Carry(const Map& map, const Corrections& corrections) : map_(map), corrections_(corrections) {}

@@ -24,7 +24,7 @@ struct AddKeyframe {
   KeyframeId id;
   Keyframe keyframe;  // without landmarks: observations are operations of their own
 };
-// The keyframe's observations go with it; frames anchored to it hang on `anchor` from now on.
+// The keyframe's observations go with it; frames anchored to it are anchored to `anchor` from now on.
 struct RemoveKeyframe {
   KeyframeId id;
   KeyframeId anchor;
@@ -64,7 +64,7 @@ struct SetOdometry {
 struct MoveLandmark {
   LandmarkId id;
   Eigen::Vector3d point_in_world;
-  // Where the landmark turns with what it hangs on; without, it is looked for from where it was.
+  // Where the landmark turns with the keyframe that it is anchored to; without, it is looked for from where it was.
   std::optional<Eigen::Vector3f> view_direction = std::nullopt;
 };
 struct SetAppearance {

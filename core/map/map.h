@@ -44,8 +44,9 @@ class Map {
 
   // World pose of something anchored to a keyframe, culled or not; empty if the anchor never existed.
   std::optional<Se3> resolve(const AnchoredPose& pose) const;
-  // A keyframe's tracked link, held by what lives: where its target was culled the link goes on to what that hangs on, and knows the
-  // less the more steps that takes. Empty if it has none, or would hang on itself.
+  // A keyframe's tracked link to a living keyframe. Where the link's target was culled, the link is continued to the keyframe that the
+  // target is anchored to, and its information is divided by the number of such steps plus one. Empty if the keyframe has no link, or
+  // would be linked to itself.
   std::optional<TrackedLink> living_link(KeyframeId id) const;
   // The living keyframe that stands for `pose`'s anchor now, and the pose relative to it.
   std::optional<AnchoredPose> reanchor(AnchoredPose pose) const;

@@ -19,7 +19,7 @@
 
 namespace vsgraphs {
 
-// `reuse_slots` is off where removed ids must stay answerable for ever (keyframes: frames hang on them).
+// `reuse_slots` is off where removed ids must stay answerable for ever (keyframes: frames are anchored to them).
 template <typename IdType, typename Value, std::uint32_t chunk_size, bool reuse_slots = true>
 class Table {
  public:

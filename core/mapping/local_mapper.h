@@ -31,17 +31,19 @@ struct LocalMapperOptions {
 template <typename Visitor>
 void describe(LocalMapperOptions& o, Visitor& field) {
   field("fusion_neighbours", o.fusion_neighbours, 1, 50,
-        "keyframes in which duplicates of new landmarks are sought");
+        "number of neighbouring keyframes in which duplicates of new landmarks are sought");
   field("triangulation_neighbours", o.triangulation_neighbours, 0, 50,
-        "keyframes with which features without depth are triangulated");
-  field("window_keyframes", o.window_keyframes, 2, 200, "keyframes that one local adjustment moves");
+        "number of neighbouring keyframes with which features without depth are triangulated");
+  field("window_keyframes", o.window_keyframes, 2, 200,
+        "number of keyframes whose poses one local adjustment changes");
   field("window_witnesses", o.window_witnesses, 1, 200,
-        "fixed keyframes that hold a local adjustment in place");
+        "number of fixed keyframes that anchor a local adjustment");
   field("iterations_before_dropping", o.iterations_before_dropping, 0, 50,
         "iterations of a local adjustment before outliers are dropped");
-  field("iterations", o.iterations, 1, 50, "iterations of a local adjustment after that");
+  field("iterations", o.iterations, 1, 50, "iterations of a local adjustment after outliers were dropped");
   field("stretch_way_m", o.stretch_way_m, 1.0, 100.0,
-        "metres of way after which another stretch of keyframes begins; a loop moves stretches as a whole");
+        "distance travelled, in metres, after which a new stretch of keyframes begins; a loop moves a "
+        "stretch as a whole");
 }
 
 class LocalMapper {

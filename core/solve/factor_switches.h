@@ -20,17 +20,20 @@ struct FactorSwitches {
 template <typename Visitor>
 void describe(FactorSwitches& o, Visitor& field) {
   field("tracked_link", o.tracked_link,
-        "a keyframe with few landmarks is tied to its reference by what tracking measured");
-  field("plane_observation", o.plane_observation, "keyframes of the window are tied to the planes they see");
-  field("plane_prior", o.plane_prior, "planes are held by what keyframes outside of the window saw of them");
-  field("wall_upright", o.wall_upright, "walls stand upright on their ground");
-  field("plane_parallel", o.plane_parallel, "walls of a room that nearly are parallel are held to it");
+        "use the factor that ties a keyframe with few landmarks to its reference as tracking measured it");
+  field("plane_observation", o.plane_observation,
+        "use the factors that tie the window's keyframes to the planes they see");
+  field("plane_prior", o.plane_prior,
+        "use the factors that hold planes where keyframes outside the window saw them");
+  field("wall_upright", o.wall_upright, "use the factors that hold walls perpendicular to their ground");
+  field("plane_parallel", o.plane_parallel,
+        "use the factors that hold nearly parallel walls of a room parallel");
   field("plane_perpendicular", o.plane_perpendicular,
-        "walls of a room that nearly are perpendicular are held to it");
-  field("room_centroid", o.room_centroid, "a room's node is the mean of its walls'");
+        "use the factors that hold nearly perpendicular walls of a room perpendicular");
+  field("room_centroid", o.room_centroid, "use the factors that tie a room's node to the mean of its walls");
   field("floor_centroid", o.floor_centroid,
-        "a floor's node is the mean of its rooms'; none without room_centroid");
-  field("marker_pose", o.marker_pose, "keyframes are tied to the markers they see");
+        "use the factors that tie a floor's node to the mean of its rooms; needs room_centroid");
+  field("marker_pose", o.marker_pose, "use the factors that tie keyframes to the markers they see");
 }
 
 }  // namespace vsgraphs

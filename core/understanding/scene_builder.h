@@ -30,11 +30,12 @@ struct SceneBuilderOptions {
 template <typename Visitor>
 void describe(SceneBuilderOptions& o, Visitor& field) {
   field("geometry_votes", o.geometry_votes, 0.0, 100.0,
-        "what geometry's opinion of a plane's class weighs; a segmenter has one vote per keyframe and plane");
-  field("accepted_votes", o.accepted_votes, 0.0, 100.0, "votes a class needs to be accepted");
-  field("min_new_plane_area_m2", o.min_new_plane_area_m2, 0.0, 10.0, "a smaller patch starts no new plane");
+        "weight of geometry's vote on a plane's class; a segmenter has one vote per keyframe and plane");
+  field("accepted_votes", o.accepted_votes, 0.0, 100.0, "number of votes that a class needs to be accepted");
+  field("min_new_plane_area_m2", o.min_new_plane_area_m2, 0.0, 10.0,
+        "smallest patch that starts a new plane, in square metres");
   field("max_behind_m", o.max_behind_m, 0.0, 10.0,
-        "a landmark farther than this behind a wall or the ground that hides it is removed");
+        "a landmark farther than this, in metres, behind a wall or ground that hides it is removed");
 }
 
 // Two edits per keyframe: what it sees is associated with the planes; then, when that is known (SurfaceKeeper), the planes

@@ -20,9 +20,11 @@ struct StructureBuilderOptions {
 
 template <typename Visitor>
 void describe(StructureBuilderOptions& o, Visitor& field) {
-  field("interval_s", o.interval_s, 0.1, 600.0, "rooms are sought this often, in seconds of the recording");
+  field("interval_s", o.interval_s, 0.1, 600.0,
+        "time between two searches for rooms, in seconds of the recording");
   field("max_reintegrations", o.max_reintegrations, 0, 1000,
-        "corrected keyframes whose free space is carved anew per pass; all at the end");
+        "number of corrected keyframes that carve their free space anew per search for rooms; all do at the "
+        "end");
 }
 
 class StructureBuilder {

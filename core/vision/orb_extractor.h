@@ -32,12 +32,13 @@ struct OrbOptions {
 
 template <typename Visitor>
 void describe(OrbOptions& o, Visitor& field) {
-  field("max_features", o.max_features, 1, 20000, "features kept per frame");
-  field("levels", o.levels, 1, 16, "levels of the image pyramid");
-  field("scale_factor", o.scale_factor, 1.05, 2.0, "size ratio of neighbouring pyramid levels");
-  field("fast_threshold", o.fast_threshold, 2, 254, "grey steps a corner needs");
+  field("max_features", o.max_features, 1, 20000, "largest number of features kept per frame");
+  field("levels", o.levels, 1, 16, "number of levels of the image pyramid");
+  field("scale_factor", o.scale_factor, 1.05, 2.0, "ratio of the sizes of neighbouring pyramid levels");
+  field("fast_threshold", o.fast_threshold, 2, 254, "difference in grey levels, of 255, that makes a corner");
   field("fast_threshold_low", o.fast_threshold_low, 1, 254,
-        "grey steps a corner needs where a part of the image has no other; at most fast_threshold");
+        "difference in grey levels, of 255, that makes a corner where a part of the image has no other; at "
+        "most fast_threshold");
 }
 
 // Not thread-safe: one per thread. Owns its buffers (about 3 MB at 640x480) and keeps them between calls.

@@ -39,8 +39,9 @@ void visit_fields(T& v, auto& field) {
 template <typename Visitor>
 void describe(PlaceIndexOptions& o, Visitor& field) {
   field("features_per_keyframe", o.features_per_keyframe, 50, 20000,
-        "strongest features of a keyframe that the place index keeps and asks for");
-  field("max_distance", o.max_distance, 0, 64, "bits of 128 in which two features of one look may differ");
+        "number of a keyframe's strongest features that the place index keeps");
+  field("max_distance", o.max_distance, 0, 64,
+        "largest number of the 128 descriptor bits in which two features of one place may differ");
 }
 
 struct PlaceMatch {

@@ -23,12 +23,14 @@ struct ClusterOptions {
 
 template <typename Visitor>
 void describe(ClusterOptions& o, Visitor& field) {
-  field("min_area_m2", o.min_area_m2, 0.1, 20.0, "smaller free spaces (niches, cupboards) are no rooms");
+  field("min_area_m2", o.min_area_m2, 0.1, 20.0, "smallest free space that can be a room, in square metres");
   field("max_island_m", o.max_island_m, 0.0, 5.0,
-        "things that stand free in a room and are not longer than this do not divide it");
+        "longest free-standing object that does not divide a room, in metres");
   field("min_persistence_m", o.min_persistence_m, 0.05, 1.0,
-        "clearance must grow by this on both sides of a narrow place that divides rooms");
-  field("narrowing", o.narrowing, 1.0, 5.0, "... and by this factor where the walls beside it are not known");
+        "a narrow place divides rooms if clearance grows by this on both of its sides, in metres");
+  field(
+      "narrowing", o.narrowing, 1.0, 5.0,
+      "a narrow place divides rooms if clearance grows by this factor where the walls beside it are unknown");
 }
 
 struct Cluster {

@@ -23,10 +23,13 @@ struct DoorOptions {
 
 template <typename Visitor>
 void describe(DoorOptions& o, Visitor& field) {
-  field("min_rays", o.min_rays, 1, 100, "rays through a strip of 5 cm that make it part of an opening");
-  field("behind_m", o.behind_m, 0.02, 1.0, "a ray went through if it ended this far behind the wall");
-  field("range_m", o.range_m, 1.0, 20.0, "keyframes farther from a door than this do not measure it");
-  field("max_keyframes", o.max_keyframes, 1, 1000, "at most so many measure one door");
+  field("min_rays", o.min_rays, 1, 100,
+        "number of rays through a strip of 5 cm that make it part of an opening");
+  field("behind_m", o.behind_m, 0.02, 1.0,
+        "a ray passed a wall if it ended this far behind the wall, in metres");
+  field("range_m", o.range_m, 1.0, 20.0,
+        "largest distance from a keyframe to a door that it measures, in metres");
+  field("max_keyframes", o.max_keyframes, 1, 1000, "largest number of keyframes that measure one door");
 }
 
 // Doors between two different rooms. Costs about 0.1 ms per door and keyframe that measures it.

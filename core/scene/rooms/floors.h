@@ -16,7 +16,8 @@ struct FloorOptions {
 
 template <typename Visitor>
 void describe(FloorOptions& o, Visitor& field) {
-  field("tolerance_m", o.tolerance_m, 0.02, 1.5, "rooms whose grounds differ less in height share a floor");
+  field("tolerance_m", o.tolerance_m, 0.02, 1.5,
+        "largest difference in height between the grounds of rooms on one floor, in metres");
 }
 
 // Ascending by height. `rooms` are numbered.

@@ -25,17 +25,22 @@ struct LevelOptions {
 
 template <typename Visitor>
 void describe(LevelOptions& o, Visitor& field) {
-  field("band_low_m", o.band_low_m, 0.1, 1.0, "the free band begins this high above the ground");
+  field("band_low_m", o.band_low_m, 0.1, 1.0,
+        "height above the ground at which the free band begins, in metres");
   field("furniture_m", o.furniture_m, 0.3, 1.8,
-        "what stays below this height above the ground is furniture: it does not bound a room");
-  field("band_high_m", o.band_high_m, 1.3, 2.5, "the free band ends this high above the ground");
-  field("lintel_low_m", o.lintel_low_m, 1.8, 3.0, "above a door there is wall, sought from this height ...");
-  field("lintel_high_m", o.lintel_high_m, 1.9, 4.0, "... to this one; low ceilings lie above");
+        "height above the ground, in metres, below which objects are furniture and do not bound a room");
+  field("band_high_m", o.band_high_m, 1.3, 2.5,
+        "height above the ground at which the free band ends, in metres");
+  field("lintel_low_m", o.lintel_low_m, 1.8, 3.0,
+        "lowest height above the ground at which wall above a door is sought, in metres");
+  field("lintel_high_m", o.lintel_high_m, 1.9, 4.0,
+        "greatest height above the ground at which wall above a door is sought, in metres");
   field("wall_high_m", o.wall_high_m, 1.5, 6.0,
-        "points of walls above this height do not count for a storey");
-  field("min_ground_area_m2", o.min_ground_area_m2, 0.1, 20.0, "a storey has a ground at least this large");
+        "points of walls higher above the ground than this, in metres, do not count for a storey");
+  field("min_ground_area_m2", o.min_ground_area_m2, 0.1, 20.0,
+        "smallest ground of a storey, in square metres");
   field("min_storey_m", o.min_storey_m, 0.5, 5.0,
-        "grounds closer above each other than this are one storey: the largest stands for it");
+        "grounds closer above each other than this, in metres, belong to one storey");
 }
 
 // Wall seen below this height above the ground is in the way of a person. A wall's points stand for cells of 0.1 m: one

@@ -21,10 +21,13 @@ struct OpeningOptions {
 template <typename Visitor>
 void describe(OpeningOptions& o, Visitor& field) {
   field("min_width_m", o.min_width_m, 0.1, 1.0,
-        "a narrower gap in a wall is a crack: it is no opening and joins nothing");
-  field("max_width_m", o.max_width_m, 0.6, 4.0, "a wider gap joins two parts of one room");
-  field("max_thickness_m", o.max_thickness_m, 0.05, 1.0, "thickest wall whose two faces are taken for one");
-  field("jamb_m", o.jamb_m, 0.1, 1.0, "an opening ends at a piece of wall no farther away than this");
+        "narrowest gap in a wall that is an opening, in metres; a narrower one is a crack");
+  field("max_width_m", o.max_width_m, 0.6, 4.0,
+        "widest gap in a wall that is an opening, in metres; a wider one joins two parts of one room");
+  field("max_thickness_m", o.max_thickness_m, 0.05, 1.0,
+        "largest thickness of a wall whose two faces are paired, in metres");
+  field("jamb_m", o.jamb_m, 0.1, 1.0,
+        "an opening ends at a piece of wall that is no farther away than this, in metres");
 }
 
 struct WallOpening {

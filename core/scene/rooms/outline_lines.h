@@ -23,14 +23,19 @@ struct OutlineOptions {
 
 template <typename Visitor>
 void describe(OutlineOptions& o, Visitor& field) {
-  field("proximity_m", o.proximity_m, 0.2, 3.0, "a wall bounds free space no farther from it than this");
-  field("min_wall_m", o.min_wall_m, 0.1, 2.0, "... along at least this much of its length");
-  field("same_line_m", o.same_line_m, 0.01, 0.5, "walls of a room in one line up to this shift share it");
-  field("same_line_deg", o.same_line_deg, 0.5, 20.0, "... and up to this turn");
+  field("proximity_m", o.proximity_m, 0.2, 3.0,
+        "largest distance from a wall to the free space that it bounds, in metres");
+  field("min_wall_m", o.min_wall_m, 0.1, 2.0,
+        "least length along which a wall must bound free space, in metres");
+  field("same_line_m", o.same_line_m, 0.01, 0.5,
+        "largest offset between walls of a room that are put on one line, in metres");
+  field("same_line_deg", o.same_line_deg, 0.5, 20.0,
+        "largest angle between walls of a room that are put on one line, in degrees");
   field("unknown_cost", o.unknown_cost, 0.0, 1.0,
-        "price of a square metre nobody saw inside a room; one of free space left outside costs 1");
+        "cost of one square metre of unseen space inside a room; free space left outside costs 1 per square "
+        "metre");
   field("unseen_edge_cost", o.unseen_edge_cost, 0.0, 2.0,
-        "price of a metre of outline where no wall was seen");
+        "cost of one metre of a room's outline where no wall was seen");
 }
 
 // Walls near which the cluster has free space on the side they face: proximity and directionality, tested piece by piece

@@ -20,8 +20,10 @@ struct PlaceOptions {
 
 template <typename Visitor>
 void describe(PlaceOptions& o, Visitor& field) {
-  field("min_clearance_m", o.min_clearance_m, 0.05, 1.0, "places have at least this much room around them");
-  field("spacing_m", o.spacing_m, 0.2, 5.0, "places are no nearer to each other than this");
+  field("min_clearance_m", o.min_clearance_m, 0.05, 1.0,
+        "least free space around a place of the graph of places, in metres");
+  field("spacing_m", o.spacing_m, 0.2, 5.0,
+        "least distance between two places of the graph of places, in metres");
 }
 
 // Widest places first, and one in each doorway. Neighbours see each other over free ground.

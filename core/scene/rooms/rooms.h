@@ -25,18 +25,19 @@ struct RoomOptions {
 
 template <typename Visitor>
 void describe(RoomOptions& o, Visitor& field) {
-  field("min_walls", o.min_walls, 1, 10, "a room is bounded by at least so many walls");
-  field("min_area_m2", o.min_area_m2, 0.1, 20.0, "... and is at least this large");
+  field("min_walls", o.min_walls, 1, 10, "least number of walls that bound a room");
+  field("min_area_m2", o.min_area_m2, 0.1, 20.0, "smallest area of a room, in square metres");
   field("min_closed_share", o.min_closed_share, 0.0, 1.0,
-        "a room is partial if less of its outline is closed by walls and openings");
+        "a room is partial if walls and openings close less than this share of its outline");
   field("min_solid_share", o.min_solid_share, 0.0, 1.0,
-        "... or if less of it has either of them or something solid standing before it");
+        "a room is partial if walls, openings and solid objects before it close less than this share of its "
+        "outline");
   field("unvisited_closed_share", o.unvisited_closed_share, 0.0, 1.0,
-        "what was only looked into is a room if this much of its outline is closed");
+        "an unvisited space is a room if this share of its outline is closed");
   field("max_ground_tilt_deg", o.max_ground_tilt_deg, 1.0, 30.0,
-        "a room's ground and walls are square to each other within this");
-  field("corridor_width_m", o.corridor_width_m, 0.5, 6.0, "a corridor is at most this wide");
-  field("corridor_aspect", o.corridor_aspect, 1.0, 20.0, "... and at least this many times as long");
+        "largest deviation from a right angle between a room's ground and its walls, in degrees");
+  field("corridor_width_m", o.corridor_width_m, 0.5, 6.0, "greatest width of a corridor, in metres");
+  field("corridor_aspect", o.corridor_aspect, 1.0, 20.0, "least ratio of length to width of a corridor");
 }
 
 // In the order of their clusters, not numbered yet.

@@ -36,13 +36,15 @@ void visit_fields(T& v, auto& field) {
 
 template <typename Visitor>
 void describe(FreeSpaceOptions& o, Visitor& field) {
-  field("voxel_m", o.voxel_m, 0.05, 0.2, "edge of a voxel");
-  field("range_m", o.range_m, 1.0, 10.0, "rays are followed this far");
+  field("voxel_m", o.voxel_m, 0.05, 0.2, "edge length of a voxel, in metres");
+  field("range_m", o.range_m, 1.0, 10.0, "largest distance up to which rays carve free space, in metres");
   field("max_blocks", o.max_blocks, 100, 1000000,
-        "blocks of 8 x 8 x 8 voxels, at most 8 kB each, after which rooms are sought without further "
-        "keyframes");
-  field("moved_m", o.moved_m, 0.001, 1.0, "a keyframe corrected by more than this is carved again");
-  field("turned_deg", o.turned_deg, 0.01, 20.0, "a keyframe turned by more than this is carved again");
+        "largest number of voxel blocks (8 x 8 x 8 voxels, at most 8 kB each); beyond it further keyframes "
+        "are left out of free space");
+  field("moved_m", o.moved_m, 0.001, 1.0,
+        "a keyframe corrected by more than this, in metres, carves its free space anew");
+  field("turned_deg", o.turned_deg, 0.01, 20.0,
+        "a keyframe turned by more than this, in degrees, carves its free space anew");
 }
 
 struct KeyframePose {

@@ -25,7 +25,7 @@ class SpaceKeeper final : public Follower {
     // Not saved:
     bool summed = false;           // the whole has it as it is
     std::vector<BlockKey> covers;  // blocks of the whole that it was last added to
-    std::set<KeyframeId> held_by;  // stretches whose keyframes its views hang on
+    std::set<KeyframeId> held_by;  // stretches whose keyframes its views are anchored to
     bool to_let_go = false;        // views may be gone that still have depth
 
     template <FieldsOf<Part> T>

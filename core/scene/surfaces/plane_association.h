@@ -25,18 +25,24 @@ struct PlaneAssociationOptions {
 
 template <typename Visitor>
 void describe(PlaneAssociationOptions& o, Visitor& field) {
-  field("max_angle_rad", o.max_angle_rad, 0.01, 0.8, "between a patch's normal and its plane's");
-  field("max_offset_m", o.max_offset_m, 0.01, 1.0, "from a patch's middle to its plane");
+  field("max_angle_rad", o.max_angle_rad, 0.01, 0.8,
+        "largest angle between a patch and the plane it is associated with, in radians");
+  field("max_offset_m", o.max_offset_m, 0.01, 1.0,
+        "largest distance from a patch's middle to the plane it is associated with, in metres");
   field("max_gap_m", o.max_gap_m, 0.0, 10.0,
-        "between a patch and what was seen of its plane before; farther apart are two surfaces");
+        "largest gap between a patch and the observed extent of its plane, in metres");
   field("same_view_offset_m", o.same_view_offset_m, 0.0, 0.5,
-        "two patches of one keyframe farther off each other's plane than this are two surfaces");
-  field("merge_angle_rad", o.merge_angle_rad, 0.005, 0.5, "between planes that are merged");
+        "largest offset between two patches of one keyframe that belong to one plane, in metres");
+  field("merge_angle_rad", o.merge_angle_rad, 0.005, 0.5,
+        "largest angle between two planes that are merged, in radians");
   field("merge_offset_m", o.merge_offset_m, 0.005, 0.5,
-        "from a plane's middle to the plane it is merged with");
-  field("merge_gap_m", o.merge_gap_m, 0.0, 10.0, "between the extents of planes that are merged");
-  field("min_thickness_m", o.min_thickness_m, 0.0, 0.5, "of a wall with two faces, at least");
-  field("max_thickness_m", o.max_thickness_m, 0.05, 2.0, "of a wall with two faces, at the most");
+        "largest distance from one plane's middle to another plane that it is merged with, in metres");
+  field("merge_gap_m", o.merge_gap_m, 0.0, 10.0,
+        "largest gap between the extents of two planes that are merged, in metres");
+  field("min_thickness_m", o.min_thickness_m, 0.0, 0.5,
+        "least thickness of a wall whose two faces are paired, in metres");
+  field("max_thickness_m", o.max_thickness_m, 0.05, 2.0,
+        "greatest thickness of a wall whose two faces are paired, in metres");
 }
 
 // A patch in the world.

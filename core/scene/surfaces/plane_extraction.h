@@ -26,17 +26,21 @@ struct PlaneExtractionOptions {
 
 template <typename Visitor>
 void describe(PlaneExtractionOptions& o, Visitor& field) {
-  field("min_range_m", o.min_range_m, 0.0, 2.0, "nearer depth readings are not used for planes");
-  field("max_range_m", o.max_range_m, 1.0, 20.0, "farther depth readings are not used for planes");
-  field("min_samples", o.min_samples, 10, 2000, "samples of the depth grid that make a patch");
-  field("min_area_m2", o.min_area_m2, 0.0, 5.0, "smaller patches are left out");
-  field("gate_sigmas", o.gate_sigmas, 1.0, 10.0, "how far off its plane a sample may lie");
-  field("max_turn_rad", o.max_turn_rad, 0.05, 1.0, "between a sample's normal and its plane's");
-  field("min_confidence", o.min_confidence, 0.0, 1.0, "labels less certain than this say nothing");
+  field("min_range_m", o.min_range_m, 0.0, 2.0, "nearest depth reading that is used for planes, in metres");
+  field("max_range_m", o.max_range_m, 1.0, 20.0, "farthest depth reading that is used for planes, in metres");
+  field("min_samples", o.min_samples, 10, 2000, "least number of depth samples in a plane's patch");
+  field("min_area_m2", o.min_area_m2, 0.0, 5.0, "smallest patch of a plane, in square metres");
+  field("gate_sigmas", o.gate_sigmas, 1.0, 10.0,
+        "largest distance of a depth sample from its plane, in standard deviations of its noise");
+  field("max_turn_rad", o.max_turn_rad, 0.05, 1.0,
+        "largest angle between a depth sample's normal and its plane's, in radians");
+  field("min_confidence", o.min_confidence, 0.0, 1.0,
+        "labels of a segmenter with less confidence than this, 0 to 1, are ignored");
   field("effective_samples", o.effective_samples, 3.0, 1000.0,
-        "independent readings that a patch counts for at the most: neighbouring ones err together");
+        "largest number of independent readings that a patch counts for, as neighbouring readings err "
+        "together");
   field("point_spacing_m", o.point_spacing_m, 0.02, 1.0,
-        "distance of the points kept to tell a patch's extent");
+        "distance between the points that are kept of a patch's extent, in metres");
 }
 
 // `labels` may be null; otherwise of the grid's size. Deterministic. About 1 ms for an 80x60 grid.

@@ -26,24 +26,29 @@ struct PlaneRoleOptions {
 
 template <typename Visitor>
 void describe(PlaneRoleOptions& o, Visitor& field) {
-  field("max_tilt_rad", o.max_tilt_rad, 0.01, 0.7, "how far a wall may be from upright, ground from level");
-  field("min_wall_area_m2", o.min_wall_area_m2, 0.0, 10.0, "a smaller upright surface is no wall yet");
+  field("max_tilt_rad", o.max_tilt_rad, 0.01, 0.7,
+        "largest tilt of a wall from upright and of ground from level, in radians");
+  field("min_wall_area_m2", o.min_wall_area_m2, 0.0, 10.0,
+        "smallest upright surface that can be a wall, in square metres");
   field("sure_wall_area_m2", o.sure_wall_area_m2, 0.0, 10.0,
-        "a smaller one takes more than min_observations keyframes to be a wall");
+        "an upright surface smaller than this, in square metres, is a wall only after more than "
+        "min_observations keyframes");
   field("min_wall_height_m", o.min_wall_height_m, 0.0, 3.0,
-        "a wall is seen over this height at least, unless it reaches wall_top_m");
+        "least height over which a wall must be seen, in metres, unless it reaches up to wall_top_m");
   field("wall_top_m", o.wall_top_m, 1.0, 4.0,
-        "an upright surface whose upper edge is seen to end lower than this above the ground is no wall");
+        "an upright surface whose top is seen to end below this height above the ground, in metres, is no "
+        "wall");
   field("open_share", o.open_share, 0.05, 1.0,
-        "share of an edge that rays must pass for it to count as seen");
+        "share of a surface's edge that rays must pass for the edge to count as seen");
   field("leaf_width_m", o.leaf_width_m, 0.0, 3.0,
-        "an upright surface narrower than this with an open side is no wall before it is seen to reach "
+        "an upright surface narrower than this, in metres, with an open side is a wall only once it reaches "
         "wall_top_m");
-  field("min_ground_area_m2", o.min_ground_area_m2, 0.0, 10.0, "a smaller level surface is no ground yet");
+  field("min_ground_area_m2", o.min_ground_area_m2, 0.0, 10.0,
+        "smallest level surface that can be ground, in square metres");
   field("step_height_m", o.step_height_m, 0.02, 1.0,
-        "ground that lies higher than other ground is a step or a table");
+        "a level surface this much above the lowest ground, in metres, is a step or a table");
   field("min_observations", o.min_observations, 1, 20,
-        "keyframes that must have seen a surface before it is judged");
+        "number of keyframes that must have seen a surface before its role is decided");
 }
 
 // How the visible outline of an upright surface ends, and how large it is.

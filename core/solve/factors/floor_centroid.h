@@ -1,4 +1,4 @@
-// A floor's centroid is the mean of its rooms': residual = (nu_f - mean of nu_r) / sigma. Like a room's it hangs on this
+// A floor's centroid is the mean of its rooms': residual = (nu_f - mean of nu_r) / sigma. Like a room's it depends on this
 // factor alone and exerts no force.
 #pragma once
 

@@ -1,5 +1,5 @@
 // A room's centroid is the mean of its walls': residual = (nu - mean of f_w) / sigma, f_w the foot on the wall's current
-// plane of the centre of what was seen of it. As in the vS-Graphs paper the centroid hangs on this factor alone: it
+// plane of the centre of what was seen of it. As in the vS-Graphs paper the centroid depends on this factor alone: it
 // follows the walls and exerts no force on them. The authors' code averages the feet of the perpendiculars from the map's
 // origin, which for a room far from it lie outside of the room.
 #pragma once

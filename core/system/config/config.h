@@ -46,23 +46,22 @@ void describe(SystemOptions& o, Visitor& field) {
         "structural elements: rooms, floors)");
   field("execution", o.execution, AllowedValues{"threaded", "serial"},
         "threaded: mapping beside tracking; serial: one after the other, the same bytes on every run");
-  field("seed", o.seed, 0, 2147483647, "start of all random numbers");
-  field("realtime", o.realtime, "tracking never waits for mapping, as with a live camera");
-  field("loop_closing", o.loop_closing,
-        "places seen before are recognised and the drift since then taken out");
+  field("seed", o.seed, 0, 2147483647, "seed of all random numbers");
+  field("realtime", o.realtime, "never let tracking wait for mapping, as with a live camera");
+  field("loop_closing", o.loop_closing, "recognise places seen before and correct the drift since then");
   field("localise_only", o.localise_only,
-        "the camera is only located in the loaded maps, which stay as they are");
+        "only locate the camera in the loaded maps and leave the maps as they are");
   field("min_map_keyframes", o.min_map_keyframes, 1, 1000,
-        "a map of fewer keyframes is dropped when tracking was lost and a new one begins");
+        "a map of fewer keyframes is dropped when tracking is lost and a new map begins");
   field("max_lag_s", o.max_lag_s, 0.0, 10.0,
-        "unless realtime: time of the sequence by which mapping may lag behind tracking, which waits for it "
-        "then");
+        "time by which mapping may lag behind tracking, in seconds of the recording; beyond it tracking "
+        "waits, unless realtime");
   field("stop_on_fault", o.stop_on_fault,
-        "a fault of the program in planes, rooms, markers, loops or adjusting the whole map ends the run; "
-        "otherwise that part is switched off with a warning, and tracking goes on");
+        "end the run at a fault of the program in planes, rooms, markers, loops or adjustment; otherwise "
+        "that part is switched off with a warning");
   field("schedule_out", o.schedule_out, AllowedValues{},
-        "file to record a run's schedule in, to replay it exactly");
-  field("replay", o.replay, AllowedValues{}, "recorded schedule to follow, edit by edit");
+        "file to which the run's schedule is recorded, to replay it exactly");
+  field("replay", o.replay, AllowedValues{}, "file with a recorded schedule to follow, edit by edit");
 }
 
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;

@@ -2,7 +2,7 @@
 // snapshot after each. Runs on one thread, whichever the executor gives it.
 //
 // One map is worked on; others lie dormant, never changed, each in a world of its own (they may come from a loaded atlas).
-// Ids are disjoint over all of them. A request that starts a map puts the one before to sleep; one that hangs on a
+// Ids are disjoint over all of them. A request that starts a map puts the one before to sleep; one that is anchored to a
 // keyframe of a dormant map wakes that one; a keyframe that shows a place of a dormant map joins the two.
 #pragma once
 

@@ -9,7 +9,7 @@
 //   rooms_last FRAME HASH             the same at the end of the run
 //   loop FRAME HASH                   it closed a loop
 //   new_map FRAME HASH                it starts a new map
-//   resume FRAME HASH                 it hangs on a dormant map, which is worked on again
+//   resume FRAME HASH                 it is anchored in a dormant map, which is worked on again
 //   join FRAME HASH                   it showed a place of a dormant map: the two became one
 //   settle FRAME HASH                 at the end: the map this run made most of is taken up again
 //   adjust FRAME ITERATIONS HASH      after which the adjustment of the whole map, asked for before, was taken in
