@@ -56,10 +56,11 @@ def evaluate(
         ),
     ] = None,
     sequence: Annotated[
-        Path | None, typer.Option(help="Folder of the input sequence, to count completion against.")
+        Path | None,
+        typer.Option(help="Folder of the input sequence, whose frames completion is counted against."),
     ] = None,
     max_dt: Annotated[
-        float, typer.Option(help="Largest time between an estimated and a true pose of a pair, seconds.")
+        float, typer.Option(help="Largest time between an estimated pose and its true pose, in seconds.")
     ] = 0.01,
     json_file: Annotated[Path | None, typer.Option("--json", help="Write the figures to this file.")] = None,
     plot: Annotated[
@@ -68,10 +69,14 @@ def evaluate(
     scene: Annotated[
         Path | None, typer.Option(help="Score the scene graph in this directory of a run instead.")
     ] = None,
-    truth: Annotated[Path | None, typer.Option(help="scene_gt.json, with --scene.")] = None,
+    truth: Annotated[
+        Path | None, typer.Option(help="True scene (scene_gt.json) that --scene is scored against.")
+    ] = None,
     tolerance: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Another tolerance of --scene, as offset_m=0.1; repeatable."),
+        typer.Option(
+            metavar="KEY=VALUE", help="Tolerance of --scene to change, as offset_m=0.1; repeatable."
+        ),
     ] = None,
 ) -> None:
     """Compare a run or a trajectory with the truth: ATE, RPE, completion; rooms, doors, walls where known."""
@@ -94,7 +99,7 @@ def evaluate(
 def view(
     run: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="Directory that `vsgraphs run` left.")],
     web: Annotated[
-        bool, typer.Option("--web", help="A page for a browser also where a window could open.")
+        bool, typer.Option("--web", help="Show the run in a browser page even where a window could open.")
     ] = False,
     record: Annotated[
         Path | None, typer.Option(help="Write what is shown to this .rrd file; no window opens.")
@@ -119,7 +124,7 @@ def info(
         Path,
         typer.Argument(metavar="RUN_DIR|ATLAS", help="A run's directory, or an atlas of `run --save-atlas`."),
     ],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")] = False,
 ) -> None:
     """Print what a run or a saved atlas holds and what it was made with."""
     with told():
@@ -170,14 +175,14 @@ def config(
     search: Annotated[
         str | None,
         typer.Argument(
-            help="Only options whose key contains this; or the word `explain`, then a key.",
+            help="Show only options whose key contains this text; or the word `explain`, then a key.",
             autocompletion=completion.config_words,
         ),
     ] = None,
     key: Annotated[
         str | None,
         typer.Argument(
-            help="After `explain`: the option to tell all about.", autocompletion=completion.option_keys
+            help="After `explain`: the key of the option to explain.", autocompletion=completion.option_keys
         ),
     ] = None,
     as_yaml: Annotated[bool, typer.Option("--yaml", help="Print a file that `run --config` reads.")] = False,

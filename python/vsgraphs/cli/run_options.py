@@ -58,8 +58,8 @@ def run(
         bool,
         typer.Option("--realtime", help="Pace frames by their timestamps; drop late ones like a camera."),
     ] = False,
-    every: Annotated[int, typer.Option(min=1, help="Take only each n-th frame.")] = 1,
-    max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")] = None,
+    every: Annotated[int, typer.Option(min=1, help="Process only every n-th frame.")] = 1,
+    max_frames: Annotated[int | None, typer.Option(min=1, help="Stop after this number of frames.")] = None,
     config: Annotated[Path | None, typer.Option(help="YAML file of options (see `vsgraphs config`).")] = None,
     set_: Annotated[
         list[str] | None,
@@ -70,11 +70,11 @@ def run(
             autocompletion=completion.assignments,
         ),
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="Start of all random numbers.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of all random numbers.")] = None,
     segmenter: Annotated[
         str,
         typer.Option(
-            help="What tells surfaces apart: geometry, onnx:FILE (a network), labels:DIR (images), "
+            help="What classifies surfaces: geometry, onnx:FILE (a network), labels:DIR (images), "
             "source (labels that come with the frames)."
         ),
     ] = "geometry",
@@ -83,7 +83,7 @@ def run(
         typer.Option(help="JSON file of ArUco markers that name rooms and doors (docs/markers.md)."),
     ] = None,
     map_colours: Annotated[
-        str, typer.Option(help="Of map.ply: image (as seen) or class (of the surface a point lies on).")
+        str, typer.Option(help="Colours of map.ply: image (as seen) or class (of each point's surface).")
     ] = "image",
     export: Annotated[
         list[str] | None,
@@ -94,22 +94,24 @@ def run(
         ),
     ] = None,
     schedule_out: Annotated[
-        Path | None, typer.Option(help="Record what happened when in a threaded run in this file.")
+        Path | None, typer.Option(help="File to record a threaded run's order of steps in, for --replay.")
     ] = None,
-    replay: Annotated[Path | None, typer.Option(help="Repeat the run recorded in this file exactly.")] = None,
+    replay: Annotated[Path | None, typer.Option(help="Replay exactly the run recorded in this file.")] = None,
     view: Annotated[
-        bool, typer.Option("--view", help="Watch it: a window, or without a display a page for a browser.")
+        bool, typer.Option("--view", help="Show the run in a window, or without a display in a browser page.")
     ] = False,
     record: Annotated[
-        Path | None, typer.Option(help="Record what --view would show in this .rrd file.")
+        Path | None, typer.Option(help="File (.rrd) in which to record what --view would show.")
     ] = None,
-    web: Annotated[bool, typer.Option("--web", help="As --view, always a page for a browser.")] = False,
+    web: Annotated[
+        bool, typer.Option("--web", help="Show the run in a browser page, as --view does without a display.")
+    ] = False,
     view_port: Annotated[int | None, typer.Option(min=1, max=65534, help=VIEW_PORT)] = None,
     view_address: Annotated[str | None, typer.Option(metavar="IP", help=VIEW_ADDRESS)] = None,
     save_atlas: Annotated[
         Path | None, typer.Option(help="Save all maps in this file at the end, Ctrl-C included.")
     ] = None,
-    load_atlas: Annotated[Path | None, typer.Option(help="Go on in the maps of this file.")] = None,
+    load_atlas: Annotated[Path | None, typer.Option(help="Continue in the maps of this atlas file.")] = None,
     localise_only: Annotated[
         bool,
         typer.Option(
@@ -122,7 +124,7 @@ def run(
             metavar="SECONDS",
             min=0.1,
             max=86400,
-            help="Save this often meanwhile too, in --save-atlas or atlas.vsg in --out.",
+            help="Seconds between saves of the atlas during the run (--save-atlas, or atlas.vsg in --out).",
         ),
     ] = None,
     frame_timeout: Annotated[
@@ -130,19 +132,21 @@ def run(
         typer.Option(
             metavar="SECONDS",
             min=0.1,
-            help="Skip a frame whose images cannot be read within this time (a network disk that stalls).",
+            help="Seconds after which a frame whose images cannot be read is skipped (a stalled network disk).",
         ),
     ] = 10.0,
     overwrite: Annotated[
         bool,
-        typer.Option("--overwrite", help="Let the run replace an atlas that it does not start from."),
+        typer.Option(
+            "--overwrite", help="Allow --save-atlas to replace an atlas that the run did not start from."
+        ),
     ] = False,
     keep: Annotated[
         int,
         typer.Option(
             min=0,
             max=1000,
-            help="Versions of the atlas from before the run to keep: FILE.1 (the last), FILE.2, ...",
+            help="Number of earlier versions of the atlas to keep: FILE.1 (the newest), FILE.2, ...",
         ),
     ] = 1,
 ) -> None:
