@@ -132,7 +132,7 @@ def run(
         typer.Option(
             metavar="SECONDS",
             min=0.1,
-            help="Seconds after which a frame whose images cannot be read is skipped (a stalled network disk).",
+            help="Seconds after which a frame with unreadable images is skipped (a stalled network disk).",
         ),
     ] = 10.0,
     overwrite: Annotated[
