@@ -88,13 +88,7 @@ nb::list similar_places(const SavedAtlas& atlas, std::uint32_t keyframe, std::ui
 }
 
 void put(nb::dict& d, const MapCounts& counts) {
-  d["keyframes"] = counts.keyframes;
-  d["landmarks"] = counts.landmarks;
-  d["planes"] = counts.planes;
-  d["rooms"] = counts.rooms;
-  d["floors"] = counts.floors;
-  d["doors"] = counts.doors;
-  d["markers"] = counts.markers;
+  for (const auto& [name, number] : counts) d[name.c_str()] = number;
 }
 
 nb::dict info_of(const SavedAtlas& atlas) {
@@ -105,14 +99,13 @@ nb::dict info_of(const SavedAtlas& atlas) {
   camera["fy"] = atlas.camera.fy;
   camera["cx"] = atlas.camera.cx;
   camera["cy"] = atlas.camera.cy;
-  MapCounts all;
+  std::vector<Snapshot> all;
   nb::list each;
   for (std::size_t i = 0; i < atlas.state.maps.size(); ++i) {
-    const MapCounts counts = count(*atlas.state.maps[i].map);
-    all += counts;
+    all.push_back(atlas.state.maps[i].map);
     nb::dict d;
     d["name"] = atlas.map_names.empty() ? nb::none() : nb::cast(atlas.map_names[i]);
-    put(d, counts);
+    put(d, count({all.back()}));
     each.append(d);
   }
   info["format"] = atlas.format;
@@ -124,7 +117,7 @@ nb::dict info_of(const SavedAtlas& atlas) {
   info["mode"] = configured(atlas.configuration, "system.mode");
   info["camera"] = camera;
   info["maps"] = atlas.state.maps.size();
-  put(info, all);
+  put(info, count(all));
   info["each"] = each;
   return info;
 }

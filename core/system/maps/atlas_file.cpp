@@ -1,5 +1,7 @@
 #include "core/system/maps/atlas_file.h"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "core/base/atomic_file.h"
@@ -7,6 +9,7 @@
 #include "core/map/map_archive.h"
 #include "core/system/maps/atlas_checks.h"
 #include "core/system/maps/followers.h"
+#include "core/understanding/element_kind.h"
 
 namespace vsgraphs {
 
@@ -111,21 +114,28 @@ SavedAtlas load_atlas(const std::filesystem::path& path) {
   return read_atlas(path.string(), content.bytes());
 }
 
-MapCounts count(const Map& map) {
-  const FoundStructure& structure = map.structure();
-  return {map.keyframes().size(),  map.landmarks().size(), map.planes().size(), structure.rooms.size(),
-          structure.floors.size(), structure.doors.size(), map.markers().size()};
-}
-
-MapCounts& MapCounts::operator+=(const MapCounts& other) {
-  keyframes += other.keyframes;
-  landmarks += other.landmarks;
-  planes += other.planes;
-  rooms += other.rooms;
-  floors += other.floors;
-  doors += other.doors;
-  markers += other.markers;
-  return *this;
+MapCounts count(const std::vector<Snapshot>& maps) {
+  MapCounts counts;
+  const auto add = [&](const std::string& name, const std::function<std::size_t(const Map&)>& in) {
+    counts.emplace_back(name, 0);
+    for (const Snapshot& map : maps) counts.back().second += in(*map);
+  };
+  add("keyframes", [](const Map& map) { return map.keyframes().size(); });
+  add("landmarks", [](const Map& map) { return map.landmarks().size(); });
+  add("planes", [](const Map& map) { return map.planes().size(); });
+  add("rooms", [](const Map& map) { return map.structure().rooms.size(); });
+  add("floors", [](const Map& map) { return map.structure().floors.size(); });
+  add("doors", [](const Map& map) { return map.structure().doors.size(); });
+  for (const ElementKind& kind : element_kinds()) {
+    add(std::string(kind.name) + "s", [&](const Map& map) {
+      const auto& elements = map.structure().elements;
+      return static_cast<std::size_t>(
+          std::count_if(elements.begin(), elements.end(),
+                        [&](const FoundElement& element) { return element.kind == kind.name; }));
+    });
+  }
+  add("markers", [](const Map& map) { return map.markers().size(); });
+  return counts;
 }
 
 bool is_empty(const AtlasState& state) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/archive.h"
@@ -45,11 +46,9 @@ SavedAtlas read_atlas(const std::string& name, std::span<const std::byte> bytes)
 void write_atlas(ArchiveWriter& archive, const SavedAtlas& atlas);
 
 // How many of each there are.
-struct MapCounts {
-  std::size_t keyframes = 0, landmarks = 0, planes = 0, rooms = 0, floors = 0, doors = 0, markers = 0;
-  MapCounts& operator+=(const MapCounts& other);
-};
-MapCounts count(const Map& map);
+// What is counted, in the plural, and how many: the same names in the same order for every map, elements of each kind among them.
+using MapCounts = std::vector<std::pair<std::string, std::size_t>>;
+MapCounts count(const std::vector<Snapshot>& maps);
 // No keyframe in any map.
 bool is_empty(const AtlasState& state);
 

@@ -161,7 +161,7 @@ class AtlasMutations : public testing::Test {
     });
     map.planes().for_each([&](PlaneId, const MappedPlane& plane) { map.observed_centre(plane); });
     for (const auto& [id, marker] : map.markers()) map.sightings(*marker);
-    count(map);
+    count({state.map});
   }
 
   const WallScene scene_;

@@ -10,9 +10,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors", "markers")
-
-
 def show_atlas(file: Path, *, as_json: bool) -> None:
     """Prints it. Raises InputError if the file is no atlas or cannot be read."""
     from vsgraphs.compiled import core
@@ -36,10 +33,11 @@ def _text(file: Path, info: dict[str, Any]) -> str:
     kept = [_told_kept(version, info["parent"]) for version in info["kept"]]
     if not info["keyframes"]:
         return "\n".join([*lines, "an empty map", *kept])
-    header = f"{'':16}" + "".join(f"{name:>11}" for name in COUNTS)
-    rows = [_row(each["name"] or f"map {i}", each) for i, each in enumerate(info["each"])]
+    counted = [key for key in info["each"][0] if key != "name"]
+    header = f"{'':16}" + "".join(f"{name:>11}" for name in counted)
+    rows = [_row(each["name"] or f"map {i}", each, counted) for i, each in enumerate(info["each"])]
     if info["maps"] != 1:
-        rows.append(_row(f"{info['maps']} maps", info))
+        rows.append(_row(f"{info['maps']} maps", info, counted))
     return "\n".join([*lines, header, *rows, *kept])
 
 
@@ -70,5 +68,5 @@ def _told_kept(version: dict[str, Any], parent: str | None) -> str:
     return f"{line}, what this one was made from" if version["revision"] == parent else line
 
 
-def _row(name: str, counts: dict[str, Any]) -> str:
-    return f"{name:16}" + "".join(f"{counts[key]:>11}" for key in COUNTS)
+def _row(name: str, counts: dict[str, Any], counted: list[str]) -> str:
+    return f"{name:16}" + "".join(f"{counts[key]:>11}" for key in counted)
