@@ -91,6 +91,9 @@ void bind_noise(nb::module_& m) {
       .def_rw("depth_delay_s", &NoiseOptions::depth_delay_s)
       .def_rw("misregistration_u_px", &NoiseOptions::misregistration_u_px)
       .def_rw("misregistration_v_px", &NoiseOptions::misregistration_v_px)
+      .def_rw("misregistration_baseline_m", &NoiseOptions::misregistration_baseline_m)
+      .def_rw("border_right", &NoiseOptions::border_right)
+      .def_rw("border_top", &NoiseOptions::border_top)
       .def_rw("roll_deg", &NoiseOptions::roll_deg)
       .def_prop_rw(
           "lens", [](const NoiseOptions& o) { return o.lens.model; },

@@ -26,7 +26,7 @@ class Holes {
  public:
   Holes(const NoiseOptions& noise, Rng& rng, int width, int height)
       : rng_(rng),
-        blotches_(rng, width, height, blotch_spacing_px, false),
+        blotches_(rng, width, height, blotch_spacing_px, Drawn::uniform),
         grazing_(static_cast<float>(std::cos(noise.grazing_deg * std::numbers::pi / 180))),
         chances_(static_cast<std::size_t>(width / 2 + 1)) {}
 
@@ -35,12 +35,13 @@ class Holes {
     if (v % 2 == 0)
       for (float& chance : chances_) chance = static_cast<float>(rng_.uniform());
   }
-  bool at(const Image<float>& disparity, int u, int v, float z, float cosine, std::uint8_t label) const {
+  // bend: of the disparity there, pixels.
+  bool at(int u, float bend, float z, float cosine, std::uint8_t label) const {
     const float chance = chances_[static_cast<std::size_t>(u / 2)];
     float loss = far_loss(z);
     if (cosine < grazing_) loss += 1 - cosine / grazing_;
     if (label == static_cast<std::uint8_t>(SceneClass::window)) loss += 4 * (blotches_.at(u) - 0.4f);
-    return chance < loss || bend_at(disparity, u, v, edge_reach_px) > edge_limit_px + edge_spread_px * chance;
+    return chance < loss || bend > edge_limit_px + edge_spread_px * chance;
   }
 
  private:
@@ -66,7 +67,7 @@ Image<std::uint16_t> sense_depth(const NoiseOptions& noise, const Camera& camera
                                  const Image<std::uint16_t>& exact, const Image<std::uint8_t>& label,
                                  const Image<float>& incidence) {
   Rng rng(noise.seed, "depth_noise", static_cast<std::uint64_t>(frame));
-  SmoothNoise wobble(rng, exact.width, exact.height, wobble_spacing_px, true);
+  SmoothNoise wobble(rng, exact.width, exact.height, wobble_spacing_px, Drawn::normal);
   Holes holes(noise, rng, exact.width, exact.height);
   const float scale = static_cast<float>(camera.depth_scale),
               bf = static_cast<float>(noise.baseline_m * camera.fx);
@@ -78,16 +79,19 @@ Image<std::uint16_t> sense_depth(const NoiseOptions& noise, const Camera& camera
   const float nearest = static_cast<float>(noise.depth_min_m),
               farthest = static_cast<float>(noise.depth_max_m);
   Image<std::uint16_t> sensed(exact.width, exact.height);
+  std::vector<float> bends;
   for (int v = 0; v < exact.height; ++v) {
     wobble.select_row(v);
+    if (noise.depth_holes) bend_row(disparity, v, edge_reach_px, bends);
     holes.select_row(v);
     for (int u = 0; u < exact.width; ++u) {
       const float d = disparity.at(u, v);
       if (d <= 0) continue;
       float z = bf / d;
-      if (noise.depth_holes && holes.at(disparity, u, v, z, incidence.at(u, v), label.at(u, v))) continue;
+      if (noise.depth_holes && holes.at(u, bends[static_cast<std::size_t>(u)], z, incidence.at(u, v), label.at(u, v)))
+        continue;
       if (noise.depth_quantisation) {
-        const float steps = std::round((d + sigma * wobble.at(u)) / step);
+        const float steps = std::floor((d + sigma * wobble.at(u)) / step + 0.5f);
         if (steps < 1) continue;
         z = bf / (step * steps);
       }

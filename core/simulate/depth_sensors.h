@@ -36,20 +36,24 @@ struct GlassAnswer {
   float mixed = 0;  // share of the pane in the way measured through it
 };
 
-// Exact depth as an image of metres (0: nothing there), with glass answered for: `lost` marks pixels without an answer.
+// Exact depth as an image of metres (0: nothing there), with glass answered for: `lost` marks pixels without an answer; empty where there is
+// no glass.
 struct Scenery {
   Image<float> depth_m;
   Image<std::uint8_t> lost;
 };
 Scenery look_through(const ExactDepth& view, const Camera& camera, const GlassAnswer& glass, Rng& rng);
 
-// How much inverse depth bends around (u, v) over `reach` pixels, in 1/m: zero on planes, large at edges.
-float bend_at(const Image<float>& inverse_depth, int u, int v, int reach);
+// How much inverse depth bends around each pixel of a row over `reach` pixels, in 1/m: zero on planes, large at edges.
+void bend_row(const Image<float>& inverse_depth, int v, int reach, std::vector<float>& bends);
 Image<float> inverse_of(const Image<float>& depth_m);
 // Pixels of a row that a projector (or second camera) `shift_px` = focal x baseline to the right does not see.
-void shadow_row(const Image<float>& depth_m, int v, float shift_px, std::vector<std::uint8_t>& hidden);
-float luminance(Rgb c);
+void shadow_row(const Image<float>& inverse_depth, int v, float shift_px, std::vector<std::uint8_t>& hidden);
+inline float luminance(Rgb c) { return 0.3f * c.r + 0.59f * c.g + 0.11f * c.b; }
 // Depth in camera units; 0 where it is beyond them.
-std::uint16_t units_of(float depth_m, const Camera& camera);
+inline std::uint16_t units_of(float depth_m, const Camera& camera) {
+  const float raw = depth_m * static_cast<float>(camera.depth_scale) + 0.5f;
+  return raw >= 1 && raw < 65536 ? static_cast<std::uint16_t>(static_cast<std::int32_t>(raw)) : std::uint16_t{0};
+}
 
 }  // namespace vsgraphs

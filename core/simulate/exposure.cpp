@@ -14,7 +14,9 @@ constexpr double aimed_at = 112;  // mean grey level
 constexpr double shortest_s = 0.001, most_gain = 12, lag_s = 0.6;
 constexpr std::array ago_s{0.05, 0.25, 0.5, 0.9, 1.4};
 
-Camera meter_of(const Camera& camera) {
+}  // namespace
+
+Camera Renderer::meter_of(const Camera& camera) {
   constexpr double columns = 40;
   Camera meter = camera;
   const double scale = columns / camera.width;
@@ -25,12 +27,10 @@ Camera meter_of(const Camera& camera) {
   return meter;
 }
 
-}  // namespace
-
 // Mean grey level of the image at this moment, at an unchanged exposure.
 double Renderer::brightness_at(double time_s) {
-  const Camera meter = meter_of(camera_);
-  VisibilityBuffer buffer(meter.width, meter.height);
+  const Camera& meter = meter_;
+  VisibilityBuffer& buffer = meter_buffer_;
   const View view{&meter, camera_at(time_s).inverse(), 0, 0, time_s};
   buffer.draw(scene_, view, visible_rooms(scene_, view));
   double sum = 0;

@@ -6,6 +6,7 @@ namespace vsgraphs {
 void VisibilityBuffer::draw_mirrors(const Scene& scene, const View& view) {
   for (std::size_t k = 0; k < scene.mirrors.size(); ++k) {
     const std::int32_t mirror = scene.mirrors[k];
+    if (!drawn_[static_cast<std::size_t>(mirror)]) continue;
     bool seen = false;
     for (std::size_t i = static_cast<std::size_t>(rows_.begin) * width_;
          i < static_cast<std::size_t>(rows_.end) * width_; ++i) {
@@ -54,6 +55,7 @@ void VisibilityBuffer::draw_panes(const Scene& scene, const View& view, const st
   for (const int i : scene.panes) {
     const Face& face = scene.faces[static_cast<std::size_t>(i)];
     if (face.room >= 0 && !rooms[static_cast<std::size_t>(face.room)]) continue;
+    if (!within_sight(face, balls_[static_cast<std::size_t>(i)])) continue;
     const Placement place = placed(face);
     if (!facing(face, place) || !project(face, place, view)) continue;
     FaceView& pane = views_[static_cast<std::size_t>(i)] = face_view(place, view);

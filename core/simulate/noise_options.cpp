@@ -34,6 +34,9 @@ void NoiseOptions::validate() const {
   within(depth_delay_s, -1, 1, "depth_delay_s");
   within(misregistration_u_px, -50, 50, "misregistration_u_px");
   within(misregistration_v_px, -50, 50, "misregistration_v_px");
+  within(misregistration_baseline_m, -0.2, 0.2, "misregistration_baseline_m");
+  within(border_right, 0, 0.5, "border_right");
+  within(border_top, 0, 0.5, "border_top");
   within(roll_deg, -360, 360, "roll_deg");
   lens.validate();
   static_cast<void>(depth_sensor(sensor));

@@ -40,6 +40,9 @@ struct NoiseOptions {
   double depth_delay_s = 0;      // depth is measured so much later than the colour image of the same stamp
   double misregistration_u_px = 0,
          misregistration_v_px = 0;  // depth at (u, v) is that of the colour at (u + .., v + ..)
+  double misregistration_baseline_m =
+      0;  // depth is seen from so far to the right: near things are off by more, fx x this / depth
+  double border_right = 0, border_top = 0;  // shares of the image that have no depth
   double roll_deg = 0;  // of the mount, clockwise as the camera sees it: 90 portrait, 180 upside down
   Lens lens;
 
@@ -48,7 +51,7 @@ struct NoiseOptions {
   void validate() const;                              // InputError naming the option
   bool depth_apart() const {  // whether depth is not taken with the colour image, pixel for pixel
     return rolling_shutter_s > 0 || depth_delay_s != 0 || misregistration_u_px != 0 ||
-           misregistration_v_px != 0;
+           misregistration_v_px != 0 || misregistration_baseline_m != 0;
   }
 };
 

@@ -19,7 +19,7 @@ constexpr float pane_passes = 0.88f, pane_adds = 7.0f;  // light through a pane 
 
 // A row's pixels first..end that see one face straight on: what the general case below works out, in loops without
 // branches.
-void look_at_run(const Camera& camera, const PixelForm<double>& form, int v, int first, int end,
+void read_run(const Camera& camera, const PixelForm<double>& form, int v, int first, int end,
                  ExactDepth& out) {
   std::uint16_t* depth = &out.depth.at(0, v);
   for (int u = first; u < end; ++u) {
@@ -52,6 +52,8 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const NoiseOptions&
       noise_(noise),
       lens_(lens_map(camera, noise.lens)),
       buffer_(pinhole().width, pinhole().height),
+      meter_(meter_of(camera)),
+      meter_buffer_(meter_.width, meter_.height),
       colour_(3 * static_cast<std::size_t>(camera.width) * camera.height),
       ray_(3 * static_cast<std::size_t>(camera.width)) {
   camera.validate();
@@ -61,10 +63,12 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const NoiseOptions&
     mount_ = Se3(so3_exp({0, 0, noise.roll_deg * std::numbers::pi / 180}), Eigen::Vector3d::Zero());
 }
 
-View Renderer::view_at(double time_s, double offset_u, double offset_v) const {
-  const Se3 world_from_camera =
-      noise_.roll_deg == 0 ? scene_.path.world_from_camera(time_s) : camera_at(time_s);
-  return {&pinhole(), world_from_camera.inverse(), offset_u, offset_v, time_s};
+View Renderer::view_at(const Moment& moment) const {
+  Se3 world_from_camera =
+      noise_.roll_deg == 0 ? scene_.path.world_from_camera(moment.time_s) : camera_at(moment.time_s);
+  if (moment.right_m != 0)
+    world_from_camera = world_from_camera * Se3(so3_exp({0, 0, 0}), {moment.right_m, 0, 0});
+  return {&pinhole(), world_from_camera.inverse(), moment.offset_u, moment.offset_v, moment.time_s};
 }
 
 // Calls look(begin, end, seconds after the middle row) for the rows that are taken at one moment.
@@ -82,76 +86,106 @@ void Renderer::each_band(bool rolling, const Look& look) const {
 
 // Draws what rows begin..end of the image look at.
 void Renderer::draw_rows(const Moment& moment, int begin, int end) {
-  View view = view_at(moment.time_s, moment.offset_u, moment.offset_v);
+  View view = view_at(moment);
   const std::array<int, 2> rows = lens_.empty() ? std::array{begin, end} : lens_.front().rows(begin, end);
   view.row_begin = rows[0], view.row_end = rows[1];
   buffer_.draw(scene_, view, visible_rooms(scene_, view));
 }
 
 void Renderer::look_at_geometry(const Moment& moment, ExactDepth& out, Image<std::uint16_t>* instance) {
-  const int w = camera_.width, h = camera_.height;
-  out.depth = Image<std::uint16_t>(w, h);
-  out.label = Image<std::uint8_t>(w, h);
-  if (noise_.depth_holes) out.incidence = Image<float>(w, h);
-  if (!scene_.panes.empty()) out.pane = Image<std::uint16_t>(w, h), out.pane_incidence = Image<float>(w, h);
+  out.label = Image<std::uint8_t>(camera_.width, camera_.height);
   each_band(moment.rolling, [&](int begin, int end, double later) {
     Moment now = moment;
     now.time_s += later;
     draw_rows(now, begin, end);
-    for (int v = begin; v < end; ++v) look_at_row(v, now, out, instance);
+    for (int v = begin; v < end; ++v) look_at_row(v, out, instance);
   });
 }
 
-void Renderer::look_at_row(int v, const Moment&, ExactDepth& out, Image<std::uint16_t>* instance) {
+void Renderer::look_at_depth(ExactDepth& out, const Moment& moment, Image<std::uint16_t>* instance) {
+  const int w = camera_.width, h = camera_.height;
+  out.depth = Image<std::uint16_t>(w, h);
+  if (noise_.depth_holes) out.incidence = Image<float>(w, h);
+  if (!scene_.panes.empty()) out.pane = Image<std::uint16_t>(w, h), out.pane_incidence = Image<float>(w, h);
+  look_at_geometry(moment, out, instance);
+}
+
+void Renderer::look_at_row(int v, ExactDepth& out, Image<std::uint16_t>* instance) const {
+  for (int u = 0; u < camera_.width; ++u) {
+    const int end = lens_.empty() ? look_at_run(u, v, out, instance) : u;
+    if (end == u)
+      look_at_pixel(u, v, out, instance);
+    else
+      u = end - 1;
+  }
+}
+
+// Pixels from `first` on that see one face, straight and through no glass. Returns where they end: `first` where there are none.
+int Renderer::look_at_run(int first, int v, ExactDepth& out, Image<std::uint16_t>* instance) const {
+  const std::int32_t *row = buffer_.face_row(v), *panes = buffer_.pane_row(v);
+  const std::int32_t seen = row[first];
+  if (seen < 0 || seen >= static_cast<std::int32_t>(scene_.faces.size())) return first;
+  int end = first;
+  while (end < camera_.width && row[end] == seen && (panes == nullptr || panes[end] < 0)) ++end;
+  if (end == first) return first;
+  const auto i = static_cast<std::size_t>(seen);
+  if (!out.depth.empty()) read_run(camera_, buffer_.views()[i].inverse_depth, v, first, end, out);
+  std::fill(&out.label.at(first, v), &out.label.at(end - 1, v) + 1,
+            static_cast<std::uint8_t>(scene_.faces[i].label));
+  if (instance != nullptr)
+    std::fill(&instance->at(first, v), &instance->at(end - 1, v) + 1, scene_.faces[i].instance);
+  return end;
+}
+
+void Renderer::look_at_pixel(int u, int v, ExactDepth& out, Image<std::uint16_t>* instance) const {
   const auto units = [&](double inverse_depth) {
     const double raw = camera_.depth_scale / inverse_depth + 0.5;
     return raw < 65536 && raw >= 0 ? static_cast<std::uint16_t>(raw) : std::uint16_t{0};
   };
-  const std::int32_t* row = lens_.empty() && scene_.panes.empty() ? buffer_.face_row(v) : nullptr;
-  for (int u = 0; u < camera_.width; ++u) {
-    if (row != nullptr && row[u] >= 0 && row[u] < static_cast<std::int32_t>(scene_.faces.size())) {
-      const int first = u;
-      while (u + 1 < camera_.width && row[u + 1] == row[first]) ++u;
-      const auto i = static_cast<std::size_t>(row[first]);
-      look_at_run(camera_, buffer_.views()[i].inverse_depth, v, first, u + 1, out);
-      std::fill(&out.label.at(first, v), &out.label.at(u, v) + 1,
-                static_cast<std::uint8_t>(scene_.faces[i].label));
-      if (instance != nullptr)
-        std::fill(&instance->at(first, v), &instance->at(u, v) + 1, scene_.faces[i].instance);
-      continue;
-    }
-    const Eigen::Vector2d at =
-        lens_.empty() ? Eigen::Vector2d(u, v) : Eigen::Vector2d(lens_.front().at(0, u, v).cast<double>());
-    const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
-    const std::int32_t seen = buffer_.face_row(y)[x];
-    if (seen < 0) continue;
-    const auto i = static_cast<std::size_t>(seen);
-    const Face* face = &scene_.faces[i % scene_.faces.size()];
-    const PixelForm<double>& form = buffer_.views()[i].inverse_depth;
+  const Eigen::Vector2d at =
+      lens_.empty() ? Eigen::Vector2d(u, v) : Eigen::Vector2d(lens_.front().at(0, u, v).cast<double>());
+  const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
+  const std::int32_t seen = buffer_.face_row(y)[x];
+  if (seen < 0) return;
+  const auto i = static_cast<std::size_t>(seen);
+  const Face* face = &scene_.faces[i % scene_.faces.size()];
+  const auto read = [&](std::size_t index, Image<std::uint16_t>& depth, Image<float>& incidence) {
+    if (depth.empty()) return;
+    const PixelForm<double>& form = buffer_.views()[index].inverse_depth;
     const double inverse_depth = form.at(at.x(), at.y());
-    out.depth.at(u, v) = units(inverse_depth);
-    if (noise_.depth_holes)
-      out.incidence.at(u, v) = incidence_cosine(pinhole(), form, inverse_depth, at.x(), at.y());
-    const std::int32_t* panes = buffer_.pane_row(y);
-    if (panes != nullptr && panes[x] >= 0) {
-      const auto p = static_cast<std::size_t>(panes[x]);
-      const PixelForm<double>& pane = buffer_.views()[p].inverse_depth;
-      face = &scene_.faces[p];
-      out.pane.at(u, v) = units(pane.at(at.x(), at.y()));
-      out.pane_incidence.at(u, v) =
-          incidence_cosine(pinhole(), pane, pane.at(at.x(), at.y()), at.x(), at.y());
-    } else if (i >= scene_.faces.size()) {
-      face = &scene_.faces[static_cast<std::size_t>(scene_.mirrors[i / scene_.faces.size() - 1])];
-    }
-    out.label.at(u, v) = static_cast<std::uint8_t>(face->label);
-    if (instance != nullptr) instance->at(u, v) = face->instance;
+    depth.at(u, v) = units(inverse_depth);
+    if (!incidence.empty())
+      incidence.at(u, v) = incidence_cosine(pinhole(), form, inverse_depth, at.x(), at.y());
+  };
+  read(i, out.depth, out.incidence);
+  const std::int32_t* panes = buffer_.pane_row(y);
+  if (panes != nullptr && panes[x] >= 0) {
+    const auto p = static_cast<std::size_t>(panes[x]);
+    face = &scene_.faces[p];
+    read(p, out.pane, out.pane_incidence);
+  } else if (i >= scene_.faces.size()) {
+    face = &scene_.faces[static_cast<std::size_t>(scene_.mirrors[i / scene_.faces.size() - 1])];
   }
+  out.label.at(u, v) = static_cast<std::uint8_t>(face->label);
+  if (instance != nullptr) instance->at(u, v) = face->instance;
+}
+
+void Renderer::cut_border(Image<std::uint16_t>& depth) const {
+  const int right = static_cast<int>(noise_.border_right * depth.width),
+            top = static_cast<int>(noise_.border_top * depth.height);
+  for (int v = 0; v < depth.height; ++v)
+    std::fill_n(&depth.at(0, v) + (v < top ? 0 : depth.width - right), v < top ? depth.width : right,
+                std::uint16_t{0});
 }
 
 void Renderer::shade(int sample, int begin, int end) {
   for (int v = begin; v < end; ++v) {
     float* colour = colour_.data() + 3 * static_cast<std::ptrdiff_t>(v) * camera_.width;
-    if (scene_.panes.empty()) {
+    const std::int32_t* panes = lens_.empty() ? buffer_.pane_row(v) : nullptr;
+    const bool glazed = panes != nullptr && std::any_of(panes, panes + camera_.width, [](std::int32_t p) {
+      return p >= 0;
+    });
+    if (scene_.panes.empty() || (panes != nullptr && !glazed)) {
       shade_row(v, sample, colour);
       continue;
     }
@@ -242,15 +276,22 @@ RenderedFrame Renderer::render(int index) {
   frame.instance = Image<std::uint16_t>(camera_.width, camera_.height);
   render_colour(frame, index);
   ExactDepth seen;
-  look_at_geometry({frame.time_s, 0, 0, true}, seen, &frame.instance);
-  frame.label = seen.label;
-  if (noise_.depth_apart())
-    look_at_geometry(
-        {frame.time_s + noise_.depth_delay_s, noise_.misregistration_u_px, noise_.misregistration_v_px}, seen,
-        nullptr);
+  const Moment now{frame.time_s, 0, 0, true};
+  if (noise_.depth_apart()) {
+    look_at_geometry(now, seen, &frame.instance);
+    frame.label = std::move(seen.label);
+    look_at_depth(seen,
+                  {frame.time_s + noise_.depth_delay_s, noise_.misregistration_u_px,
+                   noise_.misregistration_v_px, false, noise_.misregistration_baseline_m},
+                  nullptr);
+  } else {
+    look_at_depth(seen, now, &frame.instance);
+    frame.label = seen.label;
+  }
   seen.colour = &frame.rgb;
   frame.depth = noise_.depth_holes || noise_.depth_quantisation ? sense(noise_, camera_, index, seen)
                                                                 : std::move(seen.depth);
+  if (noise_.depth_holes) cut_border(frame.depth);
   return frame;
 }
 

@@ -1,6 +1,6 @@
 // Renders a scene as an RGB-D camera would see it, frame by frame in any order. Geometry (depth, class and instance) is
-// exact at the pixel's centre; colour is averaged over several rays per pixel and, with blur, over the exposure time. About
-// 15 frames/s clean and 8 with noise at 640x480 on one 2020s core.
+// exact at the pixel's centre; colour is averaged over several rays per pixel and, with blur, over the exposure time.
+// Speed: docs/simulator.md.
 #pragma once
 
 #include <cstdint>
@@ -45,16 +45,23 @@ class Renderer {
   struct Moment {  // when and how rows are looked at
     double time_s = 0, offset_u = 0, offset_v = 0;
     bool rolling = false;
+    double right_m = 0;  // the camera stands so far to the right of the one whose poses are given
   };
   const Camera& pinhole() const { return lens_.empty() ? camera_ : lens_.front().pinhole(); }
   Se3 camera_at(double time_s) const { return scene_.path.world_from_camera(time_s) * mount_; }
-  View view_at(double time_s, double offset_u, double offset_v) const;
+  View view_at(const Moment& moment) const;
   void draw_rows(const Moment& moment, int begin, int end);
   template <typename Look>
   void each_band(bool rolling, const Look& look) const;
+  // Fills `out`, its depth only where that has an image, and the instances where they are wanted.
   void look_at_geometry(const Moment& moment, ExactDepth& out, Image<std::uint16_t>* instance);
-  void look_at_row(int v, const Moment& moment, ExactDepth& out, Image<std::uint16_t>* instance);
+  void look_at_row(int v, ExactDepth& out, Image<std::uint16_t>* instance) const;
+  int look_at_run(int first, int v, ExactDepth& out, Image<std::uint16_t>* instance) const;
+  void look_at_pixel(int u, int v, ExactDepth& out, Image<std::uint16_t>* instance) const;
+  void look_at_depth(ExactDepth& out, const Moment& moment, Image<std::uint16_t>* instance);
+  void cut_border(Image<std::uint16_t>& depth) const;
   Exposure exposure_at(double time_s);
+  static Camera meter_of(const Camera& camera);
   double brightness_at(double time_s);
   void render_colour(RenderedFrame& frame, int index);
   void shade(int sample, int begin, int end);
@@ -68,6 +75,8 @@ class Renderer {
   Se3 mount_;
   std::vector<LensMap> lens_;  // one, or none
   VisibilityBuffer buffer_;
+  Camera meter_;  // a small image for automatic exposure
+  VisibilityBuffer meter_buffer_;
   std::vector<float> colour_;  // sum over rays, three floats per pixel
   std::vector<float> ray_;     // of one row, where glass has to be looked through
 };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/simulate/depth_sensors.h"
+#include "core/simulate/pixel_sensor.h"
 
 namespace vsgraphs {
 namespace {
@@ -16,38 +16,24 @@ constexpr float textured = 3.0f;  // mean change of grey level between neighbour
 constexpr float full_pattern_m = 2.0f, no_pattern_m = 6.5f;
 constexpr GlassAnswer glass{0.06f, 0.25f, 8, 0.1f, 0.5f, 0};
 
-class D435 {
+class D435 : PixelSensor {
  public:
   D435(const NoiseOptions& noise, const Camera& camera, int frame, const ExactDepth& view)
-      : noise_(noise),
-        camera_(camera),
-        view_(view),
-        rng_(noise.seed, "d435", static_cast<std::uint64_t>(frame)),
-        scenery_(look_through(view, camera, glass, rng_)),
-        inverse_(inverse_of(scenery_.depth_m)),
-        bumps_(rng_, w(), h(), 9, true),
-        grain_(rng_, w(), h(), 2, true),
-        blotches_(rng_, w(), h(), 14, false),
-        fattened_(rng_, w(), h(), 4, false),
+      : PixelSensor("d435", noise, camera, frame, view, glass),
+        bumps_(field(9, Drawn::bell)),
+        grain_(field(2, Drawn::bell)),
+        blotches_(field(14, Drawn::uniform)),
+        fattened_(field(4, Drawn::uniform)),
         bf_(static_cast<float>(noise.baseline_m) * focal_stereo_px) {}
 
   Image<std::uint16_t> sensed() {
-    Image<std::uint16_t> out(w(), h());
-    for (int v = 0; v < h(); ++v) {
-      for (SmoothNoise* n : {&bumps_, &grain_, &blotches_, &fattened_}) n->select_row(v);
-      shadow_row(scenery_.depth_m, v, static_cast<float>(noise_.baseline_m * camera_.fx), hidden_);
-      for (int u = 0; u < w(); ++u) out.at(u, v) = units_of(reading(u, v), camera_);
-    }
-    return out;
+    return read_rows(noise_.baseline_m, 1, [this](int u, int v) { return reading(u, v); });
   }
 
  private:
-  int w() const { return view_.depth.width; }
-  int h() const { return view_.depth.height; }
-
-  float reading(int u, int v) {
+  float reading(int u, int v) const {
     const float z = fattened(u, v);
-    if (z <= 0 || scenery_.lost.at(u, v) || hidden_[static_cast<std::size_t>(u)]) return 0;
+    if (z <= 0 || is_lost_at(u, v) || hidden(u)) return 0;
     if (noise_.depth_holes && is_lost(u, v, z)) return 0;
     const float fade = 1 + 0.4f * std::max(0.0f, z - 3);
     const float sigma = static_cast<float>(noise_.disparity_sigma_px) * fade;
@@ -55,18 +41,17 @@ class D435 {
     if (noise_.depth_quantisation) {
       disparity += blend_gain * (sigma * bumps_.at(u) + grain_px * grain_.at(u));
       const auto step = static_cast<float>(noise_.disparity_step_px);
-      disparity = step * std::round(disparity / step);
+      disparity = step * std::floor(disparity / step + 0.5f);
     }
     if (disparity <= 0) return 0;
-    const float read = std::round(1000 * bf_ / disparity) / 1000;  // whole millimetres
-    return read >= noise_.depth_min_m && read <= noise_.depth_max_m ? read : 0.0f;
+    return within_range(std::floor(1000 * bf_ / disparity + 0.5f) / 1000);  // whole millimetres
   }
 
   // What stands before something else grows by a pixel or two: windows of matching reach over its edge.
   float fattened(int u, int v) const {
     const int reach = fattened_.at(u) > 0.5f ? 2 : 1;
-    const float z = scenery_.depth_m.at(u, v), left = scenery_.depth_m.at(std::max(0, u - reach), v),
-                right = scenery_.depth_m.at(std::min(w() - 1, u + reach), v);
+    const float z = depth_at(u, v), left = depth_at(std::max(0, u - reach), v),
+                right = depth_at(std::min(w() - 1, u + reach), v);
     const float nearest = std::min(left > 0 ? left : z, right > 0 ? right : z);
     return nearest < 0.9f * z ? nearest : z;
   }
@@ -74,13 +59,13 @@ class D435 {
   bool is_lost(int u, int v, float z) const {
     const float drawn = spread_evenly(blotches_.at(u));
     const float pattern = std::clamp((no_pattern_m - z) / (no_pattern_m - full_pattern_m), 0.0f, 1.0f);
-    const float hold = pattern + (1 - pattern) * std::min(1.0f, texture(u, v) / textured);
-    const float cosine = view_.incidence.empty() ? 1.0f : view_.incidence.at(u, v);
+    const float hold =
+        pattern < 1 ? pattern + (1 - pattern) * std::min(1.0f, texture(u, v) / textured) : 1.0f;
+    const float cosine = cosine_at(u, v);
     float share = 0.004f + 0.8f * (1 - hold);
     if (cosine < 0.2f) share += 1 - cosine / 0.2f;
-    if (view_.label.at(u, v) == static_cast<std::uint8_t>(SceneClass::window) && view_.pane.empty())
-      share += 0.4f;
-    return drawn < share || bf_ * bend_at(inverse_, u, v, 1) > 2.5f + 2 * drawn;
+    if (on_painted_window(u, v)) share += 0.4f;
+    return drawn < share || bf_ * bend(u) > 2.5f + 2 * drawn;
   }
 
   // Mean change of grey level along the row around a pixel.
@@ -96,14 +81,7 @@ class D435 {
         0.0f, sum / (2 * reach) - 1.2f * static_cast<float>(noise_.image_noise ? noise_.image_sigma : 0));
   }
 
-  const NoiseOptions& noise_;
-  const Camera& camera_;
-  const ExactDepth& view_;
-  Rng rng_;
-  Scenery scenery_;
-  Image<float> inverse_;
-  SmoothNoise bumps_, grain_, blotches_, fattened_;
-  std::vector<std::uint8_t> hidden_;
+  const SmoothNoise &bumps_, &grain_, &blotches_, &fattened_;
   float bf_;
 };
 

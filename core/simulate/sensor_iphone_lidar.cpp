@@ -64,7 +64,8 @@ Image<std::uint16_t> sense_iphone_lidar(const NoiseOptions& noise, const Camera&
   Rng rng(noise.seed, "iphone_lidar", static_cast<std::uint64_t>(frame));
   Image<float> cells = cells_of(look_through(view, camera, glass, rng).depth_m);
   if (noise.depth_quantisation) cells = smoothed_and_turned(smoothed_and_turned(cells));
-  SmoothNoise lumps(rng, cells.width, cells.height, 10, true), grain(rng, cells.width, cells.height, 2, true);
+  SmoothNoise lumps(rng, cells.width, cells.height, 10, Drawn::bell),
+      grain(rng, cells.width, cells.height, 2, Drawn::bell);
   for (int v = 0; v < cells.height; ++v) {
     lumps.select_row(v), grain.select_row(v);
     for (int u = 0; u < cells.width; ++u) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/simulate/depth_sensors.h"
+#include "core/simulate/pixel_sensor.h"
 
 namespace vsgraphs {
 namespace {
@@ -15,7 +15,8 @@ constexpr float focal_ir_px = 580;  // at 640 columns
 constexpr float sigma_px = 0.05f;   // of disparity; with the steps it makes 0.062
 constexpr float lateral_px = 0.8f;  // Nguyen et al.
 constexpr float bias_px = 0.07f;    // slow bends, the same in all frames
-constexpr float edge_limit_px = 0.4f, edge_spread_px = 0.6f;
+constexpr float edge_limit_px = 0.4f, edge_spread_px = 0.6f, blurred_from_px = 0.3f;  // bends of disparity
+constexpr float glossy_loss = 0.4f;  // of screens, which throw the pattern elsewhere
 constexpr float dark_level = 42;  // grey level below which the pattern fades
 constexpr GlassAnswer glass{0.08f, 0.22f, 12, 0.1f, 0.75f, 0};
 
@@ -36,74 +37,54 @@ float slant_sigma(float z, float cosine) {
   return 0.0001f / std::sqrt(z) * theta * theta / (rest * rest);
 }
 
-class Kinect1 {
+class Kinect1 : PixelSensor {
  public:
   Kinect1(const NoiseOptions& noise, const Camera& camera, int frame, const ExactDepth& view)
-      : noise_(noise),
-        camera_(camera),
-        view_(view),
-        rng_(noise.seed, "kinect1", static_cast<std::uint64_t>(frame)),
+      : PixelSensor("kinect1", noise, camera, frame, view, glass),
         fixed_(noise.seed, "kinect1_bias", 0),
-        scenery_(look_through(view, camera, glass, rng_)),
-        inverse_(inverse_of(scenery_.depth_m)),
-        wobble_(rng_, w(), h(), 4, true),
-        blotches_(rng_, w(), h(), 5, false),
-        across_(rng_, w(), h(), 3, true),
-        down_(rng_, w(), h(), 3, true),
-        bias_(fixed_, w(), h(), std::max(8, w() / 8), true),
+        wobble_(field(4, Drawn::bell)),
+        blotches_(field(5, Drawn::uniform)),
+        across_(field(3, Drawn::bell)),
+        down_(field(3, Drawn::bell)),
+        bias_(field(fixed_, std::max(8, w() / 8), Drawn::bell)),
         bf_(static_cast<float>(noise.baseline_m) * focal_ir_px * static_cast<float>(w()) / 640) {}
 
   Image<std::uint16_t> sensed() {
-    Image<std::uint16_t> out(w(), h());
-    const auto shift = static_cast<float>(noise_.baseline_m * camera_.fx);
-    for (int v = 0; v < h(); ++v) {
-      for (SmoothNoise* n : {&wobble_, &blotches_, &across_, &down_, &bias_}) n->select_row(v);
-      shadow_row(scenery_.depth_m, v, shift, hidden_);
-      for (int u = 0; u < w(); ++u) out.at(u, v) = units_of(reading(u, v), camera_);
-    }
-    return out;
+    return read_rows(noise_.baseline_m, 2, [this](int u, int v) { return reading(u, v); });
   }
 
  private:
-  int w() const { return view_.depth.width; }
-  int h() const { return view_.depth.height; }
-
-  float reading(int u, int v) {
-    // Patches are matched: what is read belongs to a place nearby.
-    const float spread = blend_gain * lateral_px;
-    const int x = std::clamp(u + static_cast<int>(std::lround(spread * across_.at(u))), 0, w() - 1);
-    const int y = std::clamp(v + static_cast<int>(std::lround(spread * down_.at(u))), 0, h() - 1);
-    const float z = scenery_.depth_m.at(x, y);
-    if (z <= 0 || scenery_.lost.at(x, y) || hidden_[static_cast<std::size_t>(x)]) return 0;
-    const float cosine = view_.incidence.empty() ? 1.0f : view_.incidence.at(x, y);
-    if (noise_.depth_holes && is_lost(x, y, z, cosine)) return 0;
-    const float sigma = sigma_px + slant_sigma(z, cosine) * bf_ / (z * z);
+  float reading(int u, int v) const {
+    int x = u, y = v;
+    const float edge = bf_ * bend(u);
+    if (edge > blurred_from_px) {  // patches are matched: at edges what is read belongs to a place nearby
+      const float spread = blend_gain * lateral_px;
+      x = std::clamp(u + nearest(spread * across_.at(u)), 0, w() - 1);
+      y = std::clamp(v + nearest(spread * down_.at(u)), 0, h() - 1);
+    }
+    const float z = depth_at(x, y);
+    if (z <= 0 || is_lost_at(x, y) || hidden(x)) return 0;
+    const float cosine = cosine_at(x, y);
+    if (noise_.depth_holes && is_lost(x, y, z, cosine, edge)) return 0;
+    const float sigma = cosine < 0.5f ? sigma_px + slant_sigma(z, cosine) * bf_ / (z * z) : sigma_px;
     const float disparity = bf_ / z + blend_gain * (sigma * wobble_.at(u) + bias_px * bias_.at(u));
     const auto step = static_cast<float>(noise_.disparity_step_px);
-    const float steps = noise_.depth_quantisation ? std::round(disparity / step) : disparity / step;
-    if (steps < 1) return 0;
-    const float read = bf_ / (step * steps);
-    return read >= noise_.depth_min_m && read <= noise_.depth_max_m ? read : 0.0f;
+    const float steps = noise_.depth_quantisation ? std::floor(disparity / step + 0.5f) : disparity / step;
+    return steps < 1 ? 0.0f : within_range(bf_ / (step * steps));
   }
 
-  bool is_lost(int x, int y, float z, float cosine) const {
+  bool is_lost(int x, int y, float z, float cosine, float edge) const {
     const float chance = spread_evenly(blotches_.at(x));
-    const float grey = view_.colour != nullptr ? luminance(view_.colour->at(x, y)) : 128.0f;
-    float share = loss(z, cosine, grey);
-    if (view_.label.at(x, y) == static_cast<std::uint8_t>(SceneClass::window) && view_.pane.empty())
-      share += 0.75f;
-    if (chance < share) return true;
-    return bf_ * bend_at(inverse_, x, y, 2) > edge_limit_px + edge_spread_px * chance;
+    float share = loss(z, cosine, grey_at(x, y));
+    if (on_painted_window(x, y)) share += 0.75f;
+    if (is(SceneClass::screen, x, y)) share += glossy_loss;
+    return chance < share || edge > edge_limit_px + edge_spread_px * chance;
   }
 
-  const NoiseOptions& noise_;
-  const Camera& camera_;
-  const ExactDepth& view_;
-  Rng rng_, fixed_;
-  Scenery scenery_;
-  Image<float> inverse_;
-  SmoothNoise wobble_, blotches_, across_, down_, bias_;
-  std::vector<std::uint8_t> hidden_;
+  static int nearest(float x) { return static_cast<int>(std::floor(x + 0.5f)); }
+
+  Rng fixed_;
+  const SmoothNoise &wobble_, &blotches_, &across_, &down_, &bias_;
   float bf_;
 };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/simulate/depth_sensors.h"
+#include "core/simulate/pixel_sensor.h"
 
 namespace vsgraphs {
 namespace {
@@ -17,51 +17,33 @@ constexpr float corner_gain = 0.35f, corner_reach_m = 0.12f, most_corner_m = 0.0
 constexpr float flying_kept = 0.45f;  // of the pixels on an edge
 constexpr GlassAnswer glass{0.06f, 0.12f, 8, 0.45f, 0.4f, 0.06f};
 
-class Kinect2 {
+class Kinect2 : PixelSensor {
  public:
   Kinect2(const NoiseOptions& noise, const Camera& camera, int frame, const ExactDepth& view)
-      : noise_(noise),
-        camera_(camera),
-        view_(view),
-        rng_(noise.seed, "kinect2", static_cast<std::uint64_t>(frame)),
-        scenery_(look_through(view, camera, glass, rng_)),
-        inverse_(inverse_of(scenery_.depth_m)),
-        shot_(rng_, w(), h(), 1, true),
-        blotches_(rng_, w(), h(), 2, false) {}
+      : PixelSensor("kinect2", noise, camera, frame, view, glass),
+        shot_(field(1, Drawn::bell)),
+        blotches_(field(2, Drawn::uniform)) {}
 
   Image<std::uint16_t> sensed() {
-    Image<std::uint16_t> out(w(), h());
-    for (int v = 0; v < h(); ++v) {
-      shot_.select_row(v), blotches_.select_row(v);
-      for (int u = 0; u < w(); ++u) out.at(u, v) = units_of(reading(u, v), camera_);
-    }
-    return out;
+    return read_rows(0, 1, [this](int u, int v) { return reading(u, v); });
   }
 
  private:
-  int w() const { return view_.depth.width; }
-  int h() const { return view_.depth.height; }
-
-  float reading(int u, int v) {
-    float z = scenery_.depth_m.at(u, v);
-    if (z <= 0 || scenery_.lost.at(u, v)) return 0;
-    const float cosine = view_.incidence.empty() ? 1.0f : std::max(0.02f, view_.incidence.at(u, v));
-    const float grey = view_.colour != nullptr ? luminance(view_.colour->at(u, v)) : 128.0f;
+  float reading(int u, int v) const {
+    float z = depth_at(u, v);
+    if (z <= 0 || is_lost_at(u, v)) return 0;
     const float drawn = spread_evenly(blotches_.at(u));
     // Light that comes back, against that of a light wall at 1 m.
-    const float light = cosine * (0.25f + grey / 170) / (z * z);
+    const float light = std::max(0.02f, cosine_at(u, v)) * (0.25f + grey_at(u, v) / 170) / (z * z);
     if (noise_.depth_holes) {
-      if (light < 0.008f + 0.006f * drawn) return 0;
-      if (view_.label.at(u, v) == static_cast<std::uint8_t>(SceneClass::window) && view_.pane.empty() &&
-          drawn > 0.3f)
-        return 0;
-      if (on_edge(u, v, z)) {
+      if (light < 0.008f + 0.006f * drawn || (on_painted_window(u, v) && drawn > 0.3f)) return 0;
+      if (z * z * bend(u) > 0.04f + 0.02f * z) {
         if (drawn > flying_kept) return 0;
         z = flying(u, v, z, drawn / flying_kept);
       }
     }
     if (noise_.depth_quantisation) z += error(u, v, z, light);
-    return z >= noise_.depth_min_m && z <= noise_.depth_max_m ? z : 0.0f;
+    return within_range(z);
   }
 
   float error(int u, int v, float z, float light) const {
@@ -82,32 +64,24 @@ class Kinect2 {
     float deepest = 0;
     for (const auto& [du, dv] : {std::pair{reach, 0}, std::pair{0, reach}}) {
       if (u < du || v < dv || u + du >= w() || v + dv >= h()) continue;
-      const float before = scenery_.depth_m.at(u - du, v - dv), behind = scenery_.depth_m.at(u + du, v + dv);
+      const float before = depth_at(u - du, v - dv), behind = depth_at(u + du, v + dv);
       if (before <= 0 || behind <= 0 || std::abs(before - behind) > 4 * corner_reach_m) continue;
       deepest = std::max(deepest, z - 2 / (1 / before + 1 / behind));
     }
     return deepest < 0.25f ? std::min(most_corner_m, corner_gain * deepest) : 0.0f;
   }
 
-  bool on_edge(int u, int v, float z) const { return z * z * bend_at(inverse_, u, v, 1) > 0.04f + 0.02f * z; }
-
   // Between what is before and what is behind the edge.
   float flying(int u, int v, float z, float share) const {
     float other = z;
     for (const auto& [du, dv] : {std::pair{1, 0}, std::pair{-1, 0}, std::pair{0, 1}, std::pair{0, -1}}) {
-      const float there = scenery_.depth_m.at(std::clamp(u + du, 0, w() - 1), std::clamp(v + dv, 0, h() - 1));
+      const float there = depth_at(std::clamp(u + du, 0, w() - 1), std::clamp(v + dv, 0, h() - 1));
       if (there > 0 && std::abs(there - z) > std::abs(other - z)) other = there;
     }
     return z + share * (other - z);
   }
 
-  const NoiseOptions& noise_;
-  const Camera& camera_;
-  const ExactDepth& view_;
-  Rng rng_;
-  Scenery scenery_;
-  Image<float> inverse_;
-  SmoothNoise shot_, blotches_;
+  const SmoothNoise &shot_, &blotches_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "core/base/check.h"
 
@@ -32,11 +33,15 @@ Image<Rgb> halve(const Image<Rgb>& in) {
 }  // namespace
 
 Texture::Level Texture::pack(const Image<Rgb>& image) {
-  Level level{image.width, image.height, std::countr_zero(static_cast<unsigned>(image.width)), {}};
-  level.texels.reserve(image.pixels.size());
-  for (const Rgb c : image.pixels)
-    level.texels.push_back(c.r | static_cast<std::uint32_t>(c.g) << 8 |
-                           static_cast<std::uint32_t>(c.b) << 16);
+  Level level{image.width, image.height, {}};
+  level.texels.reserve(static_cast<std::size_t>(level.stride()) * image.height);
+  for (int v = 0; v < image.height; ++v) {
+    for (int u = 0; u <= image.width; ++u) {
+      const Rgb c = image.at(u % image.width, v);
+      level.texels.push_back(c.r | static_cast<std::uint32_t>(c.g) << 8 |
+                             static_cast<std::uint32_t>(c.b) << 16);
+    }
+  }
   return level;
 }
 
@@ -63,12 +68,18 @@ void Texture::sample_batch(const float* s, const float* t, int level, Batch& out
   }
   std::uint32_t corner[4][batch];
   const std::uint32_t* texels = l.texels.data();
-  const int right = l.width - 1, last = l.height - 1;
+  const int right = l.width - 1, last = l.height - 1, stride = l.stride();
   for (int i = 0; i < batch; ++i) {
-    const int x0 = (x[i] >> 8) & right, x1 = (x0 + 1) & right;
-    const int y0 = ((y[i] >> 8) & last) << l.log2_width, y1 = (((y[i] >> 8) + 1) & last) << l.log2_width;
-    corner[0][i] = texels[y0 + x0], corner[1][i] = texels[y0 + x1];
-    corner[2][i] = texels[y1 + x0], corner[3][i] = texels[y1 + x1];
+    const int x0 = (x[i] >> 8) & right;
+    const std::uint32_t *upper = texels + ((y[i] >> 8) & last) * stride + x0,
+                        *lower = texels + (((y[i] >> 8) + 1) & last) * stride + x0;
+    std::uint64_t pair[2];  // two neighbours at once
+    std::memcpy(&pair[0], upper, 8), std::memcpy(&pair[1], lower, 8);
+    constexpr bool little = std::endian::native == std::endian::little;
+    for (int k = 0; k < 2; ++k) {
+      const auto low = static_cast<std::uint32_t>(pair[k]), high = static_cast<std::uint32_t>(pair[k] >> 32);
+      corner[2 * k][i] = little ? low : high, corner[2 * k + 1][i] = little ? high : low;
+    }
   }
   constexpr std::uint32_t rb = 0x00ff00ff, g = 0x0000ff00;
   for (int i = 0; i < batch; ++i) {

@@ -35,8 +35,8 @@ class Texture {
  private:
   struct Level {
     int width = 0, height = 0;
-    int log2_width = 0;
-    std::vector<std::uint32_t> texels;  // r | g << 8 | b << 16
+    std::vector<std::uint32_t> texels;  // r | g << 8 | b << 16; each row's first once more behind its last
+    int stride() const { return width + 1; }
   };
   static Level pack(const Image<Rgb>& image);
   std::vector<Level> levels_;
@@ -51,11 +51,11 @@ inline Colour Texture::sample(float s, float t, int level) const {
   s -= static_cast<float>(static_cast<int>(s) - (s < 0));
   t -= static_cast<float>(static_cast<int>(t) - (t < 0));
   const std::int32_t x = fixed(s, l.width), y = fixed(1.0f - t, l.height);
-  const int x0 = (x >> 8) & (l.width - 1), x1 = (x0 + 1) & (l.width - 1);
+  const int x0 = (x >> 8) & (l.width - 1), x1 = x0 + 1;
   const int y0 = (y >> 8) & (l.height - 1), y1 = (y0 + 1) & (l.height - 1);
   const std::uint32_t fx = x & 255, fy = y & 255;
-  const std::uint32_t* row0 = l.texels.data() + (static_cast<std::ptrdiff_t>(y0) << l.log2_width);
-  const std::uint32_t* row1 = l.texels.data() + (static_cast<std::ptrdiff_t>(y1) << l.log2_width);
+  const std::uint32_t* row0 = l.texels.data() + static_cast<std::ptrdiff_t>(y0) * l.stride();
+  const std::uint32_t* row1 = l.texels.data() + static_cast<std::ptrdiff_t>(y1) * l.stride();
   // Two channels at a time: r and b share one word, g has its own.
   const auto mix = [](std::uint32_t a, std::uint32_t b, std::uint32_t f) { return a * (256 - f) + b * f; };
   constexpr std::uint32_t rb = 0x00ff00ff, g = 0x0000ff00;

@@ -106,6 +106,7 @@ void VisibilityBuffer::clear(const Scene& scene) {
   std::fill(faces_.begin() + begin, faces_.begin() + end, -1);
   views_.resize(scene.faces.size() * (scene.mirrors.size() + 1));
   if (!scene.mirrors.empty()) {
+    drawn_.assign(scene.faces.size(), false);
     in_mirror_.resize(faces_.size());
     std::fill(in_mirror_.begin() + begin, in_mirror_.begin() + end, std::uint8_t{0});
   }
@@ -126,23 +127,58 @@ bool VisibilityBuffer::facing(const Face& face, const Placement& place) const {
          axis_.dot(to) >= -face.size.sum();  // not wholly behind the camera
 }
 
-void VisibilityBuffer::draw(const Scene& scene, const View& view, const std::vector<bool>& rooms) {
-  rows_ = {std::max(0, view.row_begin), std::min(height_, view.row_end)};
-  if (rows_.begin >= rows_.end) return;
-  clear(scene);
-  eye_ = view.camera_from_world.inverse().translation();
+void VisibilityBuffer::measure(const Scene& scene) {
+  if (measured_ == &scene && balls_.size() == scene.faces.size()) return;
+  measured_ = &scene;
+  balls_.clear();
+  for (const Face& face : scene.faces) {
+    const Eigen::Vector2d half = 0.5 * face.size;
+    balls_.push_back(
+        {face.origin + half.x() * face.s_axis + half.y() * face.t_axis, face.normal(), half.norm() + 1e-6});
+  }
+}
+
+void VisibilityBuffer::look(const Scene& scene, const View& view) {
+  const Camera& k = *view.camera;
+  const Se3 world_from_camera = view.camera_from_world.inverse();
+  eye_ = world_from_camera.translation();
   axis_ = view.camera_from_world.rotation().row(2);
+  constexpr double margin_px = 1.5;
+  const double left = (view.offset_u - k.cx - margin_px) / k.fx,
+               right = (width_ - 1 + view.offset_u - k.cx + margin_px) / k.fx,
+               top = (rows_.begin + view.offset_v - k.cy - margin_px) / k.fy,
+               bottom = (rows_.end - 1 + view.offset_v - k.cy + margin_px) / k.fy;
+  sides_ = {Eigen::Vector3d(1, 0, -left), Eigen::Vector3d(-1, 0, right), Eigen::Vector3d(0, 1, -top),
+            Eigen::Vector3d(0, -1, bottom)};
+  for (Eigen::Vector3d& side : sides_) side = world_from_camera.rotation() * side.normalized();
   movers_.clear();
   for (std::size_t m = 0; m < scene.movers.size(); ++m)
     movers_.push_back(scene.world_from_mover(static_cast<int>(m), view.time_s));
+}
+
+bool VisibilityBuffer::within_sight(const Face& face, const Ball& ball) const {
+  if (face.mover >= 0) return true;
+  const Eigen::Vector3d to = ball.centre - eye_;
+  if (ball.normal.dot(face.origin - eye_) >= -1e-9) return false;  // seen from behind
+  return std::all_of(sides_.begin(), sides_.end(),
+                     [&](const Eigen::Vector3d& side) { return side.dot(to) >= -ball.radius; });
+}
+
+void VisibilityBuffer::draw(const Scene& scene, const View& view, const std::vector<bool>& rooms) {
+  rows_ = {std::max(0, view.row_begin), std::min(height_, view.row_end)};
+  if (rows_.begin >= rows_.end) return;
+  measure(scene);
+  clear(scene);
+  look(scene, view);
   for (std::size_t i = 0; i < scene.faces.size(); ++i) {
     const Face& face = scene.faces[i];
-    if (face.optics == Optics::glass) continue;
+    if (face.optics == Optics::glass || !within_sight(face, balls_[i])) continue;
     if (face.room >= 0 && !rooms[static_cast<std::size_t>(face.room)]) continue;
     const Placement place = placed(face);
     if (!facing(face, place) || !project(face, place, view)) continue;
     views_[i] = face_view(place, view);
     fill(static_cast<std::int32_t>(i), views_[i]);
+    if (face.optics == Optics::mirror) drawn_[i] = true;
   }
   if (!scene.mirrors.empty()) draw_mirrors(scene, view);
   if (!scene.panes.empty()) draw_panes(scene, view, rooms);

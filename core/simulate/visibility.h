@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -77,9 +78,18 @@ class VisibilityBuffer {
   struct Rows {
     int begin, end;
   };
+  // A ball around a face that does not move, and where it faces.
+  struct Ball {
+    Eigen::Vector3d centre, normal;
+    double radius = 0;
+  };
+  void measure(const Scene& scene);
+  void look(const Scene& scene, const View& view);
   void clear(const Scene& scene);
   Placement placed(const Face& face) const;
   bool facing(const Face& face, const Placement& place) const;
+  // False where a face surely covers no pixel of the rows wanted.
+  bool within_sight(const Face& face, const Ball& ball) const;
   void draw_mirrors(const Scene& scene, const View& view);
   void draw_behind(const Scene& scene, const View& view, std::size_t k);
   void draw_panes(const Scene& scene, const View& view, const std::vector<bool>& rooms);
@@ -93,6 +103,10 @@ class VisibilityBuffer {
   int width_, height_;
   Rows rows_{};  // of the view at hand
   Eigen::Vector3d eye_, axis_;
+  std::array<Eigen::Vector3d, 4> sides_;  // normals of what is in sight, inwards: left, right, top, bottom
+  const Scene* measured_ = nullptr;       // whose balls these are
+  std::vector<Ball> balls_;
+  std::vector<bool> drawn_;  // mirrors with a pixel in these rows
   std::vector<Se3> movers_;  // in the world, at the view's time
   std::vector<float> inverse_depths_;
   std::vector<std::int32_t> faces_;

@@ -20,7 +20,11 @@ void VisibilityBuffer::each_run(const FaceView& face_view, const Paint& paint) {
     crossings_.clear();
     for (const Edge& e : edges_)
       if (e.v_min <= v && v < e.v_max) crossings_.push_back(e.u_at_v_min + (v - e.v_min) * e.slope);
-    std::sort(crossings_.begin(), crossings_.end());
+    if (crossings_.size() == 2) {  // nearly always
+      if (crossings_[0] > crossings_[1]) std::swap(crossings_[0], crossings_[1]);
+    } else {
+      std::sort(crossings_.begin(), crossings_.end());
+    }
     const float start = static_cast<float>(face_view.inverse_depth.b * v + face_view.inverse_depth.c);
     for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       const double left = std::max(0.0, std::ceil(crossings_[i] - span_margin_px));
