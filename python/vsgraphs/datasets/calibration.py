@@ -12,6 +12,22 @@ _LARGEST_PX = 8192
 _BESIDE = 0.25  # of the image: a part cut out of a larger one may lie beside its principal point
 
 
+# Lens models that are undone at reading, with the most coefficients each has.
+LENS_MODELS = {"kannala_brandt": 4, "rational": 8}
+
+
+@dataclass(frozen=True)
+class LensModel:
+    """A lens that `Calibration.distortion` cannot tell: see `vsgraphs.datasets.straighten`."""
+
+    model: str
+    coefficients: tuple[float, ...] = ()
+
+    def filled(self, count: int) -> tuple[float, ...]:
+        """The first `count` coefficients; those not given are 0."""
+        return (*self.coefficients, *[0.0] * count)[:count]
+
+
 @dataclass(frozen=True)
 class Calibration:
     """Camera and depth sensor: the fields of `vsgraphs.Camera`, None where its default holds.
@@ -34,6 +50,7 @@ class Calibration:
     depth_noise: tuple[float, float, float] | None = None
     depth_alignment_m: float | None = None
     origin: str = "built in"
+    lens: LensModel | None = None  # undone when frames are loaded
 
     def to_core(self) -> Any:
         """The `vsgraphs.Camera` of these numbers (loads the compiled module). Raises InputError for a camera

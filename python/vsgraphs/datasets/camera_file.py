@@ -3,7 +3,8 @@
 Required: width, height (pixels), fx, fy, cx, cy (pixels; pixel centres at integers). Optional: distortion
 ([k1, k2, p1, p2, k3] or those names one by one), fps, depth_scale (raw units per metre, 5000 as in TUM
 where not given), depth_min, depth_max (metres), invalid_depth (raw values), depth_noise ([offset_m,
-scale_per_m, onset_m]), depth_alignment_m. A key that looks like a misspelt one is an error; keys that only
+scale_per_m, onset_m]), depth_alignment_m; model kannala_brandt (model_coefficients [k1, k2, k3, k4]) or
+rational ([k1, k2, p1, p2, k3, k4, k5, k6]), which are undone when images are read. A key that looks like a misspelt one is an error; keys that only
 describe (source, licence, ...) are accepted.
 """
 
@@ -14,7 +15,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from vsgraphs.datasets.calibration import Calibration, check_calibration
+from vsgraphs.datasets.calibration import LENS_MODELS, Calibration, LensModel, check_calibration
 from vsgraphs.errors import InputError
 from vsgraphs.reading import YAML_LIMIT, parse_yaml, read_text, shortened, shown
 
@@ -34,7 +35,7 @@ _NUMBERS = (
     "depth_alignment_m",
 )
 _LENS = ("k1", "k2", "p1", "p2", "k3")
-_LISTS = ("distortion", "invalid_depth", "depth_noise")
+_LISTS = ("distortion", "invalid_depth", "depth_noise", "model_coefficients")
 _DESCRIPTIVE = frozenset(
     [
         "source",
@@ -84,7 +85,9 @@ def read_camera_file(path: Path, *, y_up: bool = False) -> tuple[Calibration, li
         fields[key] = int(numbers[key])
     if y_up:
         fields["fy"] = abs(fields["fy"])
-    fields["distortion"] = _distortion(path, values)
+    fields["distortion"], fields["lens"] = _distortion(path, values), _lens(path, values)
+    if fields["lens"] is not None and any(fields["distortion"]):
+        raise InputError(f"{path}: give either distortion or model_coefficients, not both")
     if "invalid_depth" in values:
         fields["invalid_depth"] = _invalid_depth(path, values["invalid_depth"])
     if values.get("depth_noise") is not None:
@@ -146,6 +149,22 @@ def _distortion(path: Path, values: dict[str, Any]) -> tuple[float, float, float
         raise InputError(f"{path}: distortion has {len(given)} numbers, expected 4 or 5 (k1 k2 p1 p2 k3)")
     k1, k2, p1, p2, k3 = [*given, *[0.0] * (5 - len(given))]
     return (k1, k2, p1, p2, k3)
+
+
+def _lens(path: Path, values: dict[str, Any]) -> LensModel | None:
+    """`model` is free text otherwise: of a camera or of its maker."""
+    model = values.get("model")
+    if model not in LENS_MODELS:
+        if "model_coefficients" in values:
+            known = " or ".join(LENS_MODELS)
+            raise InputError(f"{path}: model_coefficients go with model: {known}, not {shown(model)}")
+        return None
+    given = _numbers(path, "model_coefficients", values.get("model_coefficients"))
+    if len(given) > LENS_MODELS[model]:
+        raise InputError(
+            f"{path}: {model} has at most {LENS_MODELS[model]} model_coefficients, not {len(given)}"
+        )
+    return LensModel(model, tuple(given))
 
 
 def _invalid_depth(path: Path, value: Any) -> tuple[int, ...]:

@@ -8,6 +8,7 @@ from typing import Protocol
 from vsgraphs.datasets import icl_nuim, openloris, redwood, replica, scannet, seven_scenes, tum
 from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.sequence import RecordedSequence
+from vsgraphs.datasets.straighten import straightened
 from vsgraphs.errors import InputError
 
 
@@ -45,7 +46,7 @@ def open_sequence(path: str | Path, camera: str | Path | Calibration | None = No
         names = sorted(entry.name for entry in folder.iterdir())
         for reader in FORMATS:
             if reader.detect(folder):
-                return reader.open_folder(folder, camera)
+                return straightened(reader.open_folder(folder, camera))
     except PermissionError as error:
         raise InputError(f"{error.filename or folder} may not be read: {error.strerror}") from None
     raise InputError(_nothing_found(folder, names))

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from vsgraphs.datasets.calibration import Calibration
 
 if TYPE_CHECKING:
+    from vsgraphs.datasets.straighten import StraightGrid
     from vsgraphs.trajectory import Trajectory
 
 Rgb = npt.NDArray[np.uint8]
@@ -37,6 +38,7 @@ class FrameRef:
     """One frame on disk: its time in seconds and where its images are.
 
     colour_grid: how colour gets the depth image's pixels; None where it has them already.
+    straight: how the images become a pinhole's; None where the camera needs no help.
     """
 
     timestamp: float
@@ -44,6 +46,7 @@ class FrameRef:
     depth_path: Path
     size: tuple[int, int]  # width, height the camera promises, pixels
     colour_grid: ColourGrid | None = None
+    straight: StraightGrid | None = None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -54,6 +57,10 @@ class FrameRef:
         """Decodes rgb (H, W, 3) uint8 and depth (H, W) uint16 raw units; FrameError if either is unusable."""
         from vsgraphs.datasets.decode import load_depth, load_rgb, load_rgb_on_grid
 
+        if self.straight is not None:
+            from vsgraphs.datasets.straighten import load_straight
+
+            return load_straight(self, self.straight)
         grid = self.colour_grid
         if grid is None:
             rgb = load_rgb(self.rgb_path, self.size)

@@ -1,0 +1,145 @@
+"""Images of lenses that the tracker's camera model does not know, turned into those of a pinhole at reading.
+
+Kannala and Brandt, "A generic camera model" (PAMI 2006), with the odd powers of the angle up to the ninth;
+rational: six radial coefficients and two tangential ones, as OpenCV's (k1 k2 p1 p2 k3 k4 k5 k6).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vsgraphs.datasets.calibration import Calibration, LensModel
+from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
+from vsgraphs.errors import InputError
+
+Array = npt.NDArray[np.float64]
+_FRACTION_BITS = 7
+
+
+def straightened(sequence: RecordedSequence) -> RecordedSequence:
+    """The sequence as a pinhole with the lens's focal lengths and centre sees it; the same where none is needed.
+
+    Colour is blended between pixels, depth is the nearest pixel's. Raises InputError where colour has a
+    camera of its own.
+    """
+    lens = sequence.calibration.lens
+    if lens is None:
+        return sequence
+    if any(frame.colour_grid is not None for frame in sequence.frames):
+        raise InputError(
+            f"{sequence.calibration.origin}: a {lens.model} lens cannot be undone where colour and depth have "
+            "cameras of their own; give images without distortion"
+        )
+    grid = StraightGrid(sequence.calibration)
+    sequence.frames = [replace(frame, straight=grid) for frame in sequence.frames]
+    sequence.warnings.append(
+        f"{sequence.calibration.origin}: {lens.model} lens undone at reading, images are those of a pinhole"
+    )
+    return sequence
+
+
+def bend(lens: LensModel, x: Array, y: Array) -> tuple[Array, Array]:
+    """x/z, y/z of a pinhole -> where the lens shows it: (pixel - centre) / focal length."""
+    r2 = x * x + y * y
+    if lens.model == "kannala_brandt":
+        k1, k2, k3, k4 = lens.filled(4)
+        r = np.sqrt(r2)
+        theta = np.arctan(r)
+        t2 = theta * theta
+        bent = theta * (1 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))
+        scale = np.where(r > 1e-12, bent / np.maximum(r, 1e-12), 1.0)
+        return x * scale, y * scale
+    k1, k2, p1, p2, k3, k4, k5, k6 = lens.filled(8)
+    scale = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+    return (
+        x * scale + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+        y * scale + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class StraightGrid:
+    """Where each pixel of the pinhole's image lies in the lens's image."""
+
+    calibration: Calibration
+
+    def __post_init__(self) -> None:
+        """Works out the tables: about 50 ms at 640x480."""
+        camera = self.calibration
+        v, u = np.indices((camera.height, camera.width), dtype=np.float64)
+        x, y = (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy
+        assert camera.lens is not None
+        bent_x, bent_y = bend(camera.lens, x, y)
+        s, t = camera.fx * bent_x + camera.cx, camera.fy * bent_y + camera.cy
+        inside = (s >= 0) & (t >= 0) & (s <= camera.width - 1) & (t <= camera.height - 1)
+        inside &= np.hypot(x, y) < _turns_back(camera.lens)
+        s, t = np.where(inside, s, 0.0), np.where(inside, t, 0.0)
+        left = np.minimum(s.astype(np.int64), camera.width - 2)
+        top = np.minimum(t.astype(np.int64), camera.height - 2)
+        one = 1 << _FRACTION_BITS
+        tables = {
+            "_nearest": (np.round(t).astype(np.int64) * camera.width + np.round(s).astype(np.int64)).ravel(),
+            "_corner": (top * camera.width + left).ravel(),
+            "_across": np.round((s - left) * one).astype(np.uint16).reshape(-1, 1),
+            "_down": np.round((t - top) * one).astype(np.uint16).reshape(-1, 1),
+            "_outside": ~inside,
+        }
+        for name, table in tables.items():
+            object.__setattr__(self, name, table)
+
+    def colour(self, rgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+        """(h, w, 3) of the lens -> of the pinhole; black where the lens shows nothing."""
+        height, width = rgb.shape[:2]
+        padded = np.zeros((height, width, 4), np.uint8)
+        padded[:, :, :3] = rgb
+        packed, me = padded.view(np.uint32).ravel(), self._tables()
+        one, half = 1 << _FRACTION_BITS, 1 << _FRACTION_BITS - 1
+
+        def texels(shift: int) -> npt.NDArray[np.uint16]:
+            return packed.take(me["_corner"] + shift).view(np.uint8).reshape(-1, 4).astype(np.uint16)
+
+        across, down = me["_across"], me["_down"]
+        upper = (texels(0) * (one - across) + texels(1) * across + half) >> _FRACTION_BITS
+        lower = (texels(width) * (one - across) + texels(width + 1) * across + half) >> _FRACTION_BITS
+        mixed = (upper * (one - down) + lower * down + half) >> _FRACTION_BITS
+        out = np.ascontiguousarray(mixed.astype(np.uint8).reshape(height, width, 4)[:, :, :3])
+        out[me["_outside"]] = 0
+        return out
+
+    def depth(self, depth: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint16]:
+        """(h, w) of the lens -> of the pinhole; 0 where the lens shows nothing."""
+        me = self._tables()
+        out = depth.ravel().take(me["_nearest"]).reshape(depth.shape)
+        out[me["_outside"]] = 0
+        return out
+
+    def _tables(self) -> dict[str, Any]:
+        return self.__dict__
+
+
+def _turns_back(lens: LensModel) -> float:
+    """Radius x/z from which on the lens's image runs inwards again: what the model says there means nothing."""
+    r = np.linspace(0.0, 4.0, 4001)
+    bent, _ = bend(replace(lens, coefficients=_radial(lens)), r, np.zeros_like(r))
+    falling = np.flatnonzero((np.diff(bent) <= 0) | ~np.isfinite(bent[1:]))
+    return float(r[falling[0]]) if len(falling) else np.inf
+
+
+def _radial(lens: LensModel) -> tuple[float, ...]:
+    if lens.model == "kannala_brandt":
+        return lens.coefficients
+    k1, k2, _, _, *more = lens.filled(8)
+    return (k1, k2, 0.0, 0.0, *more)
+
+
+def load_straight(frame: FrameRef, grid: StraightGrid) -> tuple[Any, Any]:
+    """Decodes a frame and undoes its lens. Raises FrameError if an image is unusable."""
+    from vsgraphs.datasets.decode import load_depth, load_rgb
+
+    return grid.colour(load_rgb(frame.rgb_path, frame.size)), grid.depth(
+        load_depth(frame.depth_path, frame.size)
+    )
