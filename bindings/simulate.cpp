@@ -92,6 +92,7 @@ void bind_noise(nb::module_& m) {
       .def_rw("misregistration_u_px", &NoiseOptions::misregistration_u_px)
       .def_rw("misregistration_v_px", &NoiseOptions::misregistration_v_px)
       .def_rw("misregistration_baseline_m", &NoiseOptions::misregistration_baseline_m)
+      .def_rw("softness_px", &NoiseOptions::softness_px)
       .def_rw("border_right", &NoiseOptions::border_right)
       .def_rw("border_top", &NoiseOptions::border_top)
       .def_rw("roll_deg", &NoiseOptions::roll_deg)

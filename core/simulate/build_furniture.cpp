@@ -42,7 +42,7 @@ void add_box(SceneAssembly& builder, std::size_t index) {
                 plan.seed};
     kind.build(piece);
     const double z = stand.origin.z();
-    builder.scene().solids.push_back({plan.at, half, yaw, z, z + plan.size.z(), key});
+    builder.scene().solids.push_back({plan.at, half, yaw, z, z + plan.size.z(), key, kind.shading});
   }
 }
 

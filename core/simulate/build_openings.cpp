@@ -119,6 +119,29 @@ void add_window_frame(SceneAssembly& builder, const Tag& tag, const Stand& stand
                   white_wood, sides);
 }
 
+void add_radiator(SceneAssembly& builder, const WindowPlan& plan, int room, const Stand& stand) {
+  const Tag tag = builder.add_instance(SceneClass::radiator, room);
+  const double half = 0.4 * plan.width;
+  const Eigen::Vector3d low(plan.along - half, 0.04, 0.12), high(plan.along + half, 0.14, plan.sill - 0.12);
+  builder.add_box(tag, stand, low, high, {"lacquer", 3, {200, 198, 190}}, all_sides & ~BoxSide::back,
+                  Material{"ribs", 3, {200, 198, 190}});
+}
+
+void add_curtain(SceneAssembly& builder, const WindowPlan& plan, int room, const WallGeometry& wall,
+                 const Stand& stand) {
+  const Tag tag = builder.add_instance(SceneClass::curtain, room);
+  const double top = std::min(wall.height - 0.05, plan.sill + plan.height + 0.2);
+  Rng rng(plan.seed, "curtain", 0);
+  const Rgb cloth{static_cast<std::uint8_t>(40 + rng.index(70)),
+                  static_cast<std::uint8_t>(50 + rng.index(70)),
+                  static_cast<std::uint8_t>(70 + rng.index(90))};
+  for (int i = 0; i < 4; ++i) {
+    const double a = plan.along + 0.5 * plan.width - 0.02 + 0.09 * i, y = i % 2 ? 0.06 : 0.09;
+    if (a + 0.09 > wall.length - 0.02) break;
+    builder.add_box(tag, stand, {a, y, 0.06}, {a + 0.09, y + 0.06, top}, {"curtain", 4, cloth});
+  }
+}
+
 void add_window(SceneAssembly& builder, std::size_t index) {
   Scene& scene = builder.scene();
   const WindowPlan plan = scene.plan.windows[index];
@@ -142,26 +165,8 @@ void add_window(SceneAssembly& builder, std::size_t index) {
     add_window_view(builder, plan, pane, stand, o, pane_depth_m);
   add_reveal(builder, frame, stand, o, niche_depth_m, white_wood, white_wood, frame);
   add_window_frame(builder, frame, stand, o);
-  if (plan.radiator && plan.sill > 0.5) {
-    const Tag tag = builder.add_instance(SceneClass::radiator, r);
-    const double half = 0.4 * plan.width;
-    const Eigen::Vector3d low(plan.along - half, 0.04, 0.12), high(plan.along + half, 0.14, plan.sill - 0.12);
-    builder.add_box(tag, stand, low, high, {"lacquer", 3, {200, 198, 190}}, all_sides & ~BoxSide::back,
-                    Material{"ribs", 3, {200, 198, 190}});
-  }
-  if (plan.curtain) {
-    const Tag tag = builder.add_instance(SceneClass::curtain, r);
-    const double top = std::min(wall.height - 0.05, plan.sill + plan.height + 0.2);
-    Rng rng(plan.seed, "curtain", 0);
-    const Rgb cloth{static_cast<std::uint8_t>(40 + rng.index(70)),
-                    static_cast<std::uint8_t>(50 + rng.index(70)),
-                    static_cast<std::uint8_t>(70 + rng.index(90))};
-    for (int i = 0; i < 4; ++i) {
-      const double a = o.along_max - 0.02 + 0.09 * i, y = i % 2 ? 0.06 : 0.09;
-      if (a + 0.09 > wall.length - 0.02) break;
-      builder.add_box(tag, stand, {a, y, 0.06}, {a + 0.09, y + 0.06, top}, {"curtain", 4, cloth});
-    }
-  }
+  if (plan.radiator && plan.sill > 0.5) add_radiator(builder, plan, r, stand);
+  if (plan.curtain) add_curtain(builder, plan, r, wall, stand);
   const Eigen::Vector2d n = wall.normal;
   scene.lights.push_back({stand.at({plan.along, 0.05, plan.sill + 0.5 * plan.height}),
                           {n.x(), n.y(), 0},

@@ -17,27 +17,27 @@ Image<std::uint16_t> sense_classic(const NoiseOptions& noise, const Camera& came
 // Shutters, delays and ranges of the cameras as sold; what is measured about depth is in each sensor's own file.
 void as_kinect1(NoiseOptions& o) {
   o.depth_min_m = 0.45, o.depth_max_m = 8.0;
-  o.auto_exposure = true, o.exposure_time_s = 0.012;
+  o.auto_exposure = true, o.exposure_time_s = 0.012, o.softness_px = 0.8;
   o.rolling_shutter_s = 0.02, o.depth_delay_s = 0.012;
   o.misregistration_u_px = 0.5, o.misregistration_v_px = -1.0, o.misregistration_baseline_m = 0.003;
   o.border_right = 0.06, o.border_top = 0.06;
 }
 void as_kinect2(NoiseOptions& o) {
   o.depth_min_m = 0.5, o.depth_max_m = 4.5;
-  o.auto_exposure = true, o.exposure_time_s = 0.012;
+  o.auto_exposure = true, o.exposure_time_s = 0.012, o.softness_px = 0.8;
   o.rolling_shutter_s = 0.02, o.depth_delay_s = 0.006;
   o.misregistration_u_px = 0.5, o.misregistration_baseline_m = 0.003;
 }
 void as_d435(NoiseOptions& o) {
   o.baseline_m = 0.05, o.disparity_step_px = 1.0 / 32, o.disparity_sigma_px = 0.08;
   o.depth_min_m = 0.28, o.depth_max_m = 10.0;
-  o.auto_exposure = true, o.exposure_time_s = 0.008;
+  o.auto_exposure = true, o.exposure_time_s = 0.008, o.softness_px = 0.7;
   o.rolling_shutter_s = 0.015, o.depth_delay_s = 0.003;
   o.misregistration_u_px = 0.4, o.misregistration_baseline_m = 0.001;
 }
 void as_iphone(NoiseOptions& o) {
   o.depth_min_m = 0.2, o.depth_max_m = 5.0;
-  o.auto_exposure = true, o.exposure_time_s = 0.008, o.image_sigma = 1.6;
+  o.auto_exposure = true, o.exposure_time_s = 0.008, o.image_sigma = 1.6, o.softness_px = 0.5;
   o.rolling_shutter_s = 0.012;
 }
 

@@ -41,9 +41,8 @@ double Renderer::brightness_at(double time_s) {
       const auto i = static_cast<std::size_t>(seen);
       const Face& face = scene_.faces[i % scene_.faces.size()];
       const Shader shader(face, buffer.views()[i], scene_.materials[static_cast<std::size_t>(face.material)]);
-      std::array<float, 3> colour{};
-      shade_point(shader, static_cast<float>(u), static_cast<float>(v), 0, colour.data());
-      for (const float c : colour) sum += std::min(c, 255.0f) / 3;
+      const Colour colour = shade_point(shader, static_cast<float>(u), static_cast<float>(v), 0);
+      for (const float c : {colour.r, colour.g, colour.b}) sum += std::min(c, 255.0f) / 3;
     }
   }
   return sum / (meter.width * meter.height);

@@ -135,12 +135,11 @@ void floor_lamp(Piece& p) {
   p.builder.scene().lights.push_back({p.stand.at({0, 0, p.h}), {0, 0, 1}, 0.25, p.tag.room});
 }
 
-void monitor(Piece& p) {
+void monitor(Piece& p, const Material& front) {
   const Material black{"lacquer", 7, {34, 34, 36}};
   p.box({-0.12, -p.d, 0}, {0.12, p.d, 0.015}, black);
   p.box({-0.02, -0.02, 0.015}, {0.02, 0.02, 0.3 * p.h}, black);
-  p.box({-p.w, -0.02, 0.25 * p.h}, {p.w, 0.02, p.h}, black, all_sides,
-        Material{"screen", p.seed, {255, 255, 255}});
+  p.box({-p.w, -0.02, 0.25 * p.h}, {p.w, 0.02, p.h}, black, all_sides, front);
 }
 
 void photo(Piece& p) {
@@ -159,6 +158,8 @@ void books(Piece& p) {
   }
 }
 
+constexpr double small = 0.12;  // shading of things that lie about on tables
+
 constexpr FurnitureKind table_of_kinds[] = {
     {"box", SceneClass::misc, {120, 96, 92}, plain_box},
     {"parcel", SceneClass::misc, {156, 112, 66}, parcel},
@@ -172,9 +173,18 @@ constexpr FurnitureKind table_of_kinds[] = {
     {"bed", SceneClass::bed, {140, 106, 74}, bed},
     {"plant", SceneClass::plant, {60, 110, 60}, plant},
     {"floor_lamp", SceneClass::lamp, {226, 220, 204}, floor_lamp},
-    {"screen", SceneClass::screen, {34, 34, 36}, monitor},
+    {"screen", SceneClass::screen, {34, 34, 36},
+     [](Piece& p) { monitor(p, {"screen", p.seed, {255, 255, 255}}); }},
+    {"dark_screen", SceneClass::screen, {16, 16, 18}, [](Piece& p) { monitor(p, p.plain()); }},
     {"photo", SceneClass::picture, {60, 48, 40}, photo},
     {"books", SceneClass::misc, {120, 60, 60}, books},
+    {"keyboard", SceneClass::misc, {206, 202, 190}, keyboard, small},
+    {"papers", SceneClass::misc, {226, 225, 220}, papers, small},
+    {"magazine", SceneClass::misc, {255, 255, 255}, magazine, small},
+    {"mug", SceneClass::misc, {224, 222, 216}, mug, small},
+    {"pens", SceneClass::misc, {60, 66, 74}, pens, small},
+    {"booklet", SceneClass::misc, {255, 255, 255}, booklet, small},
+    {"carton", SceneClass::misc, {208, 196, 172}, carton, small},
     {"pillar", SceneClass::pillar, {198, 200, 194}, pillar},
     {"rug", SceneClass::rug, {72, 112, 72}, rug},
 };

@@ -30,8 +30,18 @@ struct FurnitureKind {
   SceneClass label;
   Rgb colour;  // where the plan gives none
   void (*build)(Piece&);
+  double shading = 1;  // see Solid
 };
 
 std::span<const FurnitureKind> furniture_table();
+
+// What lies and stands on tables.
+void keyboard(Piece& p);
+void papers(Piece& p);
+void magazine(Piece& p);
+void mug(Piece& p);
+void pens(Piece& p);
+void booklet(Piece& p);
+void carton(Piece& p);
 
 }  // namespace vsgraphs

@@ -31,7 +31,9 @@ double from_lights(const std::vector<Light>& lights, const Eigen::Vector3d& p, c
   return sum;
 }
 
-double shade(double distance) { return 1 - corner_depth * std::exp(-distance / corner_reach_m); }
+double shade(double distance, double share = 1) {
+  return 1 - share * corner_depth * std::exp(-distance / corner_reach_m);
+}
 
 // Nearby surfaces that hide part of the room from p: walls, floor and ceiling unless p lies on them, and furniture.
 double openness(const Scene& scene, int room, const RoomLights& near, const Eigen::Vector3d& p,
@@ -53,7 +55,7 @@ double openness(const Scene& scene, int room, const RoomLights& near, const Eige
                  y = std::abs(-s * d.x() + c * d.y()) - solid->half.y();
     const double z = std::max(solid->z_min - p.z(), p.z() - solid->z_max);
     if (std::max({x, y, z}) < 0.02) continue;  // on or in the piece itself
-    open *= shade(std::hypot(std::max(x, 0.0), std::max(y, 0.0), std::max(z, 0.0)));
+    open *= shade(std::hypot(std::max(x, 0.0), std::max(y, 0.0), std::max(z, 0.0)), solid->shading);
   }
   return open;
 }

@@ -1,4 +1,6 @@
 // Materials made for one face of a thing: doors, fronts, book spines, parcels, screens, rugs, the view outside.
+#include <algorithm>
+
 #include "core/simulate/canvas.h"
 #include "core/simulate/materials.h"
 
@@ -100,6 +102,63 @@ Canvas rug(Rng& rng, Rgb colour) {
   return c;
 }
 
+// Keys of a keyboard, with what is printed on them.
+Canvas keys(Rng& rng, Rgb colour) {
+  Canvas c(512, 256, scaled(colour, 0.62));
+  constexpr int rows = 6, columns = 21;
+  const double w = 0.96 / columns, h = 0.9 / rows;
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      if (i == 15 || (j == 5 && i > 3 && i < 9)) continue;  // beside the number pad; the space bar
+      const double x = 0.02 + i * w, y = 0.05 + j * h;
+      c.fill(x + 0.08 * w, y + 0.08 * h, x + 0.9 * w, y + 0.88 * h, scaled(colour, rng.uniform(0.96, 1.05)));
+      c.headline(rng, x + 0.28 * w, y + 0.2 * h, x + 0.55 * w, y + 0.6 * h, 1, {50, 50, 54});
+    }
+  }
+  c.fill(0.02 + 4 * w, 0.05 + 5.08 * h, 0.02 + 8.9 * w, 0.05 + 5.88 * h, colour);
+  c.grain(rng, 2);
+  return c;
+}
+
+// A printed page: a heading, paragraphs, often a picture or a table.
+Canvas page(Rng& rng, Rgb colour) {
+  Canvas c(256, 512, colour);
+  c.headline(rng, 0.1, 0.05, 0.1 + rng.uniform(0.4, 0.75), 0.09, 6 + static_cast<int>(rng.index(5)), {30, 30, 34});
+  double y = 0.13;
+  while (y < 0.85) {
+    const double height = rng.uniform(0.1, 0.22), end = std::min(0.95, y + height);
+    if (rng.uniform() < 0.25) {
+      c.fill(0.15, y, 0.85, end - 0.02, random_hue(rng, 0.4, 0.7));
+      c.disc(rng.uniform(0.3, 0.7), 0.5 * (y + end), 0.1, random_hue(rng, 0.6, 0.5));
+    } else {
+      c.writing(rng, 0.1, y, 0.9, end - 0.02, std::max(2, static_cast<int>(height * 60)), {70, 70, 76});
+    }
+    y = end;
+  }
+  c.grain(rng, 2);
+  return c;
+}
+
+// A printed cover: a title, a picture, small print.
+Canvas cover(Rng& rng) {
+  const Rgb ground = random_hue(rng, rng.uniform(0.1, 0.8), rng.uniform(0.25, 0.95));
+  Canvas c(256, 256, ground);
+  const Rgb ink = ground.g > 120 ? Rgb{28, 28, 34} : Rgb{236, 234, 226};
+  c.headline(rng, 0.08, 0.06, 0.9, 0.2, 5 + static_cast<int>(rng.index(4)), ink);
+  for (int i = 0; i < 12; ++i) {
+    const double x = rng.uniform(0.1, 0.85), y = rng.uniform(0.28, 0.7), r = rng.uniform(0.03, 0.14);
+    const Rgb paint = random_hue(rng, 0.6, rng.uniform(0.2, 0.95));
+    if (rng.uniform() < 0.5)
+      c.disc(x, y, r, paint);
+    else
+      c.fill(x - r, y - 0.7 * r, x + r, y + 0.7 * r, paint);
+  }
+  c.writing(rng, 0.08, 0.76, 0.7, 0.95, 5, ink);
+  c.mottle(rng, 8, 24);
+  c.grain(rng, 4);
+  return c;
+}
+
 }  // namespace
 
 PaintedMaterial paint_motif(const Material& m) {
@@ -111,6 +170,9 @@ PaintedMaterial paint_motif(const Material& m) {
   if (m.kind == "parcel") return {parcel(rng, m.colour).image()};
   if (m.kind == "outside") return {outside(rng).image()};
   if (m.kind == "screen") return {screen(rng).image()};
+  if (m.kind == "keys") return {keys(rng, m.colour).image()};
+  if (m.kind == "page") return {page(rng, m.colour).image()};
+  if (m.kind == "cover") return {cover(rng).image()};
   if (m.kind == "rug") return {rug(rng, m.colour).image()};
   return {};
 }

@@ -29,6 +29,7 @@ void NoiseOptions::validate() const {
   within(exposure_amplitude, 0, 0.9, "exposure_amplitude");
   within(exposure_time_s, 0, 0.2, "exposure_time_s");
   within(image_sigma, 0, 60, "image_sigma");
+  within(softness_px, 0, 1.5, "softness_px");
   within(exposure_max_s, 0, 0.2, "exposure_max_s");
   within(rolling_shutter_s, 0, 0.2, "rolling_shutter_s");
   within(depth_delay_s, -1, 1, "depth_delay_s");

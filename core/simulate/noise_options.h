@@ -34,6 +34,8 @@ struct NoiseOptions {
   bool image_noise = true;
   double image_sigma = 2.4;  // grey levels, mostly alike in all channels
 
+  double softness_px = 0;  // standard deviation of the blur of optics and colour mosaic
+
   bool auto_exposure = false;  // longer exposure in dark rooms, then more gain and with it more noise
   double exposure_max_s = 0.033;
   double rolling_shutter_s = 0;  // from the first row's exposure to the last one's

@@ -11,10 +11,8 @@
 namespace vsgraphs {
 namespace {
 
-// Offsets within the pixel (a rotated grid).
-constexpr double ray_offsets[rays_per_pixel][2] = {
-    {-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}};
 constexpr double band_s = 0.001;                        // of a rolling shutter: rows within it share a moment
+constexpr double still_px = 3.5;                        // motion during an exposure that two rays show well enough
 constexpr float pane_passes = 0.88f, pane_adds = 7.0f;  // light through a pane of glass, and off it
 
 // A row's pixels first..end that see one face straight on: what the general case below works out, in loops without
@@ -40,7 +38,7 @@ void read_run(const Camera& camera, const PixelForm<double>& form, int v, int fi
 std::vector<LensMap> lens_map(const Camera& camera, const Lens& lens) {
   if (!lens.bends()) return {};
   std::vector<Eigen::Vector2d> offsets{{0, 0}};
-  for (const auto& o : ray_offsets) offsets.emplace_back(o[0], o[1]);
+  for (const Ray& ray : rays) offsets.emplace_back(ray.offset_u, ray.offset_v);
   return {LensMap(camera, lens, offsets)};
 }
 
@@ -179,24 +177,26 @@ void Renderer::cut_border(Image<std::uint16_t>& depth) const {
 }
 
 void Renderer::shade(int sample, int begin, int end) {
+  const auto row_of = [&](float* first) {
+    return ColourRow{first, first + camera_.width, first + 2 * static_cast<std::ptrdiff_t>(camera_.width)};
+  };
   for (int v = begin; v < end; ++v) {
     float* colour = colour_.data() + 3 * static_cast<std::ptrdiff_t>(v) * camera_.width;
     const std::int32_t* panes = lens_.empty() ? buffer_.pane_row(v) : nullptr;
-    const bool glazed = panes != nullptr && std::any_of(panes, panes + camera_.width, [](std::int32_t p) {
-      return p >= 0;
-    });
-    if (scene_.panes.empty() || (panes != nullptr && !glazed)) {
-      shade_row(v, sample, colour);
+    const bool clear =
+        panes != nullptr && std::all_of(panes, panes + camera_.width, [](std::int32_t p) { return p < 0; });
+    if (scene_.panes.empty() || clear) {
+      shade_row(v, sample, row_of(colour));
       continue;
     }
     std::fill(ray_.begin(), ray_.end(), 0.0f);
-    shade_row(v, sample, ray_.data());
-    tint_row(v, sample, ray_.data());
+    shade_row(v, sample, row_of(ray_.data()));
+    tint_row(v, sample, row_of(ray_.data()));
     for (std::size_t i = 0; i < ray_.size(); ++i) colour[i] += ray_[i];
   }
 }
 
-void Renderer::shade_row(int v, int sample, float* colour) {
+void Renderer::shade_row(int v, int sample, const ColourRow& colour) {
   if (!lens_.empty()) return shade_bent_row(v, sample, colour);
   const std::int32_t* faces = buffer_.face_row(v);
   for (int u = 0; u < camera_.width;) {
@@ -214,7 +214,7 @@ void Renderer::shade_row(int v, int sample, float* colour) {
   }
 }
 
-void Renderer::shade_bent_row(int v, int sample, float* colour) {
+void Renderer::shade_bent_row(int v, int sample, const ColourRow& colour) {
   const auto offset = static_cast<std::size_t>(sample) + 1;
   const auto seen = [&](const Eigen::Vector2f& p) {
     return buffer_.face_row(static_cast<int>(p.y() + 0.5f))[static_cast<int>(p.x() + 0.5f)];
@@ -227,12 +227,14 @@ void Renderer::shade_bent_row(int v, int sample, float* colour) {
     for (; u < camera_.width; ++u) {
       const Eigen::Vector2f p = lens_.front().at(offset, u, v);
       if (seen(p) != id) break;
-      if (id >= 0) shade_point(shader, p.x(), p.y(), sample, colour + 3 * u);
+      if (id < 0) continue;
+      const Colour c = shade_point(shader, p.x(), p.y(), sample);
+      colour.r[u] += c.r, colour.g[u] += c.g, colour.b[u] += c.b;
     }
   }
 }
 
-void Renderer::tint_row(int v, int sample, float* colour) const {
+void Renderer::tint_row(int v, int sample, const ColourRow& colour) const {
   for (int u = 0; u < camera_.width; ++u) {
     int x = u, y = v;
     if (!lens_.empty()) {
@@ -240,25 +242,35 @@ void Renderer::tint_row(int v, int sample, float* colour) const {
       x = static_cast<int>(p.x() + 0.5f), y = static_cast<int>(p.y() + 0.5f);
     }
     if (buffer_.pane_row(y)[x] < 0) continue;
-    for (int k = 0; k < 3; ++k) colour[3 * u + k] = pane_passes * colour[3 * u + k] + pane_adds;
+    for (float* c : {colour.r, colour.g, colour.b}) c[u] = pane_passes * c[u] + pane_adds;
   }
+}
+
+// Of sensors whose optics are soft; the path of the image's middle at 1 m says how much is blurred.
+bool Renderer::two_rays_do(const Exposure& exposure, double time_s) const {
+  if (noise_.softness_px <= 0) return false;
+  const Se3 moved = camera_at(time_s - 0.5 * exposure.time_s).inverse() * camera_at(time_s + 0.5 * exposure.time_s);
+  return camera_.fx * (so3_log(moved.rotation()).norm() + moved.translation().norm()) < still_px;
 }
 
 void Renderer::render_colour(RenderedFrame& frame, int index) {
   std::fill(colour_.begin(), colour_.end(), 0.0f);
   const Exposure exposure = exposure_at(frame.time_s);
+  const bool two = two_rays_do(exposure, frame.time_s);
+  const int count = two ? 2 : rays_per_pixel, first = two ? first_of_two : 0;
   each_band(true, [&](int begin, int end, double later) {
-    for (int k = 0; k < rays_per_pixel; ++k) {
-      const double time = frame.time_s + exposure.time_s * ((k + 0.5) / rays_per_pixel - 0.5) + later;
+    for (int k = 0; k < count; ++k) {
+      const double time = frame.time_s + exposure.time_s * ((k + 0.5) / count - 0.5) + later;
+      const Ray& ray = rays[first + k];
       const bool bent = !lens_.empty();  // then rays are picked from one image
       if (!bent || k == 0 || exposure.time_s > 0)
-        draw_rows({time, bent ? 0 : ray_offsets[k][0], bent ? 0 : ray_offsets[k][1]}, begin, end);
-      shade(k, begin, end);
+        draw_rows({time, bent ? 0 : ray.offset_u, bent ? 0 : ray.offset_v}, begin, end);
+      shade(first + k, begin, end);
     }
   });
   NoiseOptions noise = noise_;
   noise.image_sigma = exposure.sigma;
-  develop(noise, index, exposure.gain / rays_per_pixel, colour_, frame.rgb);
+  develop(noise, index, exposure.gain / static_cast<float>(count), colour_, frame.rgb);
 }
 
 Se3 Renderer::pose(int index) const {

@@ -11,6 +11,7 @@
 #include "core/geometry/se3.h"
 #include "core/simulate/noise_options.h"
 #include "core/simulate/scene.h"
+#include "core/simulate/shading.h"
 #include "core/simulate/visibility.h"
 
 namespace vsgraphs {
@@ -65,9 +66,10 @@ class Renderer {
   double brightness_at(double time_s);
   void render_colour(RenderedFrame& frame, int index);
   void shade(int sample, int begin, int end);
-  void shade_row(int v, int sample, float* colour);
-  void shade_bent_row(int v, int sample, float* colour);
-  void tint_row(int v, int sample, float* colour) const;
+  void shade_row(int v, int sample, const ColourRow& colour);
+  void shade_bent_row(int v, int sample, const ColourRow& colour);
+  void tint_row(int v, int sample, const ColourRow& colour) const;
+  bool two_rays_do(const Exposure& exposure, double time_s) const;
 
   const Scene& scene_;
   Camera camera_;
@@ -77,7 +79,7 @@ class Renderer {
   VisibilityBuffer buffer_;
   Camera meter_;  // a small image for automatic exposure
   VisibilityBuffer meter_buffer_;
-  std::vector<float> colour_;  // sum over rays, three floats per pixel
+  std::vector<float> colour_;  // sum over rays, see ColourRow
   std::vector<float> ray_;     // of one row, where glass has to be looked through
 };
 

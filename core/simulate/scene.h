@@ -148,7 +148,8 @@ struct MarkerGeometry {
 struct Solid {
   Eigen::Vector2d center, half;
   double yaw_rad = 0, z_min = 0, z_max = 0;
-  std::string name;  // for messages, e.g. "boxes[3] (bookshelf)"
+  std::string name;    // for messages, e.g. "boxes[3] (bookshelf)"
+  double shading = 1;  // how much light it takes from what is near, against a wall
 };
 
 struct Light {

@@ -12,10 +12,12 @@ namespace vsgraphs {
 namespace {
 
 constexpr float focal_ir_px = 580;  // at 640 columns
-constexpr float sigma_px = 0.05f;   // of disparity; with the steps it makes 0.062
+constexpr float sigma_px = 0.048f;   // of disparity; with the steps it makes 0.060
+constexpr float near_m = 0.0008f;   // what does not shrink with the distance; Nguyen et al. have 1.2 mm at 0.4 m in all
 constexpr float lateral_px = 0.8f;  // Nguyen et al.
 constexpr float bias_px = 0.07f;    // slow bends, the same in all frames
 constexpr float edge_limit_px = 0.4f, edge_spread_px = 0.6f, blurred_from_px = 0.3f;  // bends of disparity
+constexpr float fine_share = 0.35f;  // of what decides on losses: the rest goes by patches of a hand's size
 constexpr float glossy_loss = 0.4f;  // of screens, which throw the pattern elsewhere
 constexpr float dark_level = 42;  // grey level below which the pattern fades
 constexpr GlassAnswer glass{0.08f, 0.22f, 12, 0.1f, 0.75f, 0};
@@ -44,6 +46,7 @@ class Kinect1 : PixelSensor {
         fixed_(noise.seed, "kinect1_bias", 0),
         wobble_(field(4, Drawn::bell)),
         blotches_(field(5, Drawn::uniform)),
+        patches_(field(22, Drawn::uniform)),
         across_(field(3, Drawn::bell)),
         down_(field(3, Drawn::bell)),
         bias_(field(fixed_, std::max(8, w() / 8), Drawn::bell)),
@@ -66,7 +69,9 @@ class Kinect1 : PixelSensor {
     if (z <= 0 || is_lost_at(x, y) || hidden(x)) return 0;
     const float cosine = cosine_at(x, y);
     if (noise_.depth_holes && is_lost(x, y, z, cosine, edge)) return 0;
-    const float sigma = cosine < 0.5f ? sigma_px + slant_sigma(z, cosine) * bf_ / (z * z) : sigma_px;
+    const float px_per_m = bf_ / (z * z);
+    float sigma = std::sqrt(sigma_px * sigma_px + near_m * near_m * px_per_m * px_per_m);
+    if (cosine < 0.5f) sigma += slant_sigma(z, cosine) * px_per_m;
     const float disparity = bf_ / z + blend_gain * (sigma * wobble_.at(u) + bias_px * bias_.at(u));
     const auto step = static_cast<float>(noise_.disparity_step_px);
     const float steps = noise_.depth_quantisation ? std::floor(disparity / step + 0.5f) : disparity / step;
@@ -74,7 +79,8 @@ class Kinect1 : PixelSensor {
   }
 
   bool is_lost(int x, int y, float z, float cosine, float edge) const {
-    const float chance = spread_evenly(blotches_.at(x));
+    const float fine = spread_evenly(blotches_.at(x)), coarse = spread_evenly(patches_.at(x));
+    const float chance = spread_evenly(fine_share * fine + (1 - fine_share) * coarse);
     float share = loss(z, cosine, grey_at(x, y));
     if (on_painted_window(x, y)) share += 0.75f;
     if (is(SceneClass::screen, x, y)) share += glossy_loss;
@@ -84,7 +90,7 @@ class Kinect1 : PixelSensor {
   static int nearest(float x) { return static_cast<int>(std::floor(x + 0.5f)); }
 
   Rng fixed_;
-  const SmoothNoise &wobble_, &blotches_, &across_, &down_, &bias_;
+  const SmoothNoise &wobble_, &blotches_, &patches_, &across_, &down_, &bias_;
   float bf_;
 };
 

@@ -34,7 +34,7 @@ Image<std::uint16_t> sense(const NoiseOptions& noise, const Camera& camera, int 
 // Brightness factor at a time: a slow wander around 1.
 float exposure_gain(const NoiseOptions& noise, double time_s);
 
-// Sums of light (three per pixel) times `scale` to 8 bits, with image noise where it is on. About 3 ms at 640x480.
+// Sums of light (a row's red, green and blue one after the other) times `scale` to 8 bits, with image noise where it is on. About 3 ms at 640x480.
 void develop(const NoiseOptions& noise, int frame, float scale, const std::vector<float>& colour,
              Image<Rgb>& rgb);
 

@@ -7,8 +7,6 @@
 namespace vsgraphs {
 namespace {
 
-// Fractions of a texture level: with their places in the pixel, four rays together filter in both.
-constexpr float level_offsets[rays_per_pixel] = {0.0f, 0.5f, 0.25f, 0.75f};
 constexpr float level_bias = -0.9f;  // four rays resolve about one level more than one does
 constexpr int chunk_px = 8;          // level and light are worked out once per chunk of a row
 
@@ -56,7 +54,7 @@ int Shader::level(float u, float v, float z, float dither) const {
 
 // Eight pixels whose level and light's course are known; every step as it is done for one.
 static void shade_batch(const Shader& shader, const float* inverse_depth, int u0, float y, int level,
-                        float light, float light_step, float* colour) {
+                        float light, float light_step, const ColourRow& colour) {
   float s[Texture::batch], t[Texture::batch], lights[Texture::batch];
   for (int i = 0; i < Texture::batch; ++i) {
     const float x = static_cast<float>(u0 + i), z = 1 / inverse_depth[u0 + i];
@@ -67,16 +65,14 @@ static void shade_batch(const Shader& shader, const float* inverse_depth, int u0
   for (float& l : lights) l = light, light += light_step;
   Texture::Batch c;
   shader.texture->sample_batch(s, t, level, c);
-  float* out = colour + 3 * u0;
-  for (int i = 0; i < Texture::batch; ++i) {
-    out[3 * i] += lights[i] * c.r[i];
-    out[3 * i + 1] += lights[i] * c.g[i];
-    out[3 * i + 2] += lights[i] * c.b[i];
-  }
+  float *r = colour.r + u0, *g = colour.g + u0, *b = colour.b + u0;
+  for (int i = 0; i < Texture::batch; ++i) r[i] += lights[i] * c.r[i];
+  for (int i = 0; i < Texture::batch; ++i) g[i] += lights[i] * c.g[i];
+  for (int i = 0; i < Texture::batch; ++i) b[i] += lights[i] * c.b[i];
 }
 
 void shade_run(const Shader& shader, const float* inverse_depth, int begin, int end, int v, int sample,
-               float* colour) {
+               const ColourRow& colour) {
   const float y = static_cast<float>(v);
   const auto place = [&](int u, float z) {
     const float x = static_cast<float>(u);
@@ -86,7 +82,7 @@ void shade_run(const Shader& shader, const float* inverse_depth, int begin, int 
     const int u1 = std::min(u0 + chunk_px, end);
     const int last = u1 - 1;
     const float z0 = 1 / inverse_depth[u0], z1 = 1 / inverse_depth[last];
-    const int level = shader.level(static_cast<float>(u0), y, z0, level_offsets[sample]);
+    const int level = shader.level(static_cast<float>(u0), y, z0, rays[sample].level);
     const auto [s0, t0] = place(u0, z0);
     const auto [s1, t1] = place(last, z1);
     float light = light_at(shader.face->lightmap, s0, t0);
@@ -100,22 +96,22 @@ void shade_run(const Shader& shader, const float* inverse_depth, int begin, int 
       const auto [s, t] = place(u, 1 / inverse_depth[u]);
       const Colour c = shader.texture->sample(s * shader.s_scale + shader.s_offset,
                                               t * shader.t_scale + shader.t_offset, level);
-      colour[3 * u] += light * c.r;
-      colour[3 * u + 1] += light * c.g;
-      colour[3 * u + 2] += light * c.b;
+      colour.r[u] += light * c.r;
+      colour.g[u] += light * c.g;
+      colour.b[u] += light * c.b;
       light += step;
     }
   }
 }
 
-void shade_point(const Shader& shader, float u, float v, int sample, float* colour) {
+Colour shade_point(const Shader& shader, float u, float v, int sample) {
   const float z = 1 / std::max(shader.inverse_depth.at(u, v), 1e-4f);
   const float s = shader.s.at(u, v) * z - shader.s_shift, t = shader.t.at(u, v) * z - shader.t_shift;
   const float light = light_at(shader.face->lightmap, s, t);
   const Colour c =
       shader.texture->sample(s * shader.s_scale + shader.s_offset, t * shader.t_scale + shader.t_offset,
-                             shader.level(u, v, z, level_offsets[sample]));
-  colour[0] += light * c.r, colour[1] += light * c.g, colour[2] += light * c.b;
+                             shader.level(u, v, z, rays[sample].level));
+  return {light * c.r, light * c.g, light * c.b};
 }
 
 }  // namespace vsgraphs

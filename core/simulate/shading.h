@@ -7,7 +7,19 @@
 
 namespace vsgraphs {
 
-inline constexpr int rays_per_pixel = 4;
+// Rays through a pixel: four on a rotated grid, or two where sensors are soft and the camera hardly moves; a `sample` is an index here.
+struct Ray {
+  float offset_u, offset_v;
+  float level;  // added to the texture level: fractions with which the rays of a pixel filter between levels
+};
+inline constexpr int rays_per_pixel = 4, first_of_two = 4;
+inline constexpr Ray rays[] = {{-0.125f, -0.375f, 0.0f}, {0.375f, -0.125f, 0.5f}, {-0.375f, 0.125f, 0.25f},
+                               {0.125f, 0.375f, 0.75f},  {-0.25f, -0.25f, 0.4f},  {0.25f, 0.25f, 0.9f}};
+
+// Sums of light, a row's red, green and blue one after the other.
+struct ColourRow {
+  float *r, *g, *b;
+};
 
 // Everything one face needs per pixel, in single precision.
 struct Shader {
@@ -24,11 +36,11 @@ struct Shader {
   int level(float u, float v, float z, float dither) const;
 };
 
-// Adds the light of pixels begin..end of a row that see one face. `inverse_depth`: of the row; `colour`: three floats a pixel.
+// Adds the light of pixels begin..end of a row that see one face. `inverse_depth`: of the row.
 void shade_run(const Shader& shader, const float* inverse_depth, int begin, int end, int v, int sample,
-               float* colour);
-// The same of one pixel anywhere.
-void shade_point(const Shader& shader, float u, float v, int sample, float* colour);
+               const ColourRow& colour);
+// Light of one pixel anywhere.
+Colour shade_point(const Shader& shader, float u, float v, int sample);
 
 // Light falling on a face at (s, t).
 float light_at(const Lightmap& map, float s, float t);

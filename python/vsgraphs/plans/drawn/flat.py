@@ -68,7 +68,7 @@ def _room(
     item = (
         shut_door(draw, name)
         if name in ("bath", "store")
-        else open_door(draw, name, min(height, hall.height - step))
+        else open_door(draw, name, min(height, hall.height - step), width - 1.02)
     )
     item["height"] = min(item["height"], round(hall.height - step - 0.012, 3), round(height - 0.012, 3))
     half = item.get("width", 0.9) / 2
@@ -126,7 +126,7 @@ def _bedroom(hall: Hall, name: str, side: str, x: float, size: tuple[float, floa
 
 
 def _kitchen(hall: Hall, name: str, side: str, x: float, size: tuple[float, float]) -> tuple[Space, float]:
-    step = hall.draw.choose((0.0, 0.1, 0.18, 0.3))
+    step = hall.draw.choose((0.0, 0.1, 0.18, 0.3, 0.4))
     more = {"height": round(hall.height - step, 3), "z_floor": step, "floor": "tiles", "brightness": 1.1}
     w, d = size
     space, door = _room(hall, name, side, x, size, more, alcove=hall.draw.uniform(0.4, 0.8))

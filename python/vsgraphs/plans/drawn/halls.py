@@ -76,12 +76,15 @@ class Hall:
             self.used["N" if frame.angle_deg == 0 else "S"].append((x - half, x + half))
 
 
-def open_door(draw: Draw, room: str, top: float) -> Item:
-    """One that is walked through: no leaf, one wide open, or a pair. top: height of the lower room."""
+def open_door(draw: Draw, room: str, top: float, most: float) -> Item:
+    """One that is walked through: no leaf, one wide open, or a pair.
+
+    top: height of the lower room; most: width there is room for, metres.
+    """
     kind = draw.choose(("none", "open", "open", "pair", "high"))
     if kind == "pair":
         leaf = {"room": room, "angle_deg": draw.uniform(95, 120), "pair": True}
-        return {"width": draw.uniform(1.5, 1.9), "height": 2.1, "leaf": leaf}
+        return {"width": min(draw.uniform(1.5, 2.5), round(most, 3)), "height": 2.1, "leaf": leaf}
     width = draw.uniform(0.85, 1.0)
     if kind == "none":
         return {"width": width, "height": 2.05}
