@@ -100,7 +100,7 @@ def rays_of(camera: Any, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
 def share_on_walls(
     corners: npt.NDArray[Any], depth: Depth, rays: npt.NDArray[np.float64], up: npt.NDArray[np.float64]
 ) -> float:
-    """Of corners (n, 2) with depth, those within 3 noise spreads of an upright plane with 8 % of all depth."""
+    """Of corners (n, 2) with depth, those near an upright plane that holds 8 % of all depth or more."""
     u, v = np.round(corners).astype(int).T
     points = rays[::6, ::6][depth[::6, ::6] > 0] * depth[::6, ::6][depth[::6, ::6] > 0][:, None]
     z = depth[v, u]

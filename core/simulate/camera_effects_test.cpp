@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/simulate/renderer.h"
+#include "core/simulate/sensor_noise.h"
 #include "core/simulate/testing.h"
 
 namespace vsgraphs {
@@ -75,6 +76,63 @@ TEST(CameraEffects, MisregisteredDepthIsShiftedByPixels) {
     for (int u = 10; u < 150; ++u, ++compared)
       differing += std::abs(a.depth.at(u, v) - b.depth.at(u + 3, v - 2)) > 1;
   EXPECT_LT(differing, compared / 200);
+}
+
+TEST(CameraEffects, DepthFromBesideTheColourHasParallax) {
+  const Scene scene = build_scene(turning_plan());
+  const Camera camera = small_camera();
+  NoiseOptions beside = NoiseOptions::none();
+  beside.misregistration_baseline_m = 0.06;
+  const RenderedFrame a = Renderer(scene, camera, beside).render(50),
+                      b = Renderer(scene, camera, NoiseOptions::none()).render(50);
+  int compared = 0, off = 0, off_unmoved = 0;
+  double least = 1e9, most = 0;
+  for (int v = 10; v < 110; ++v) {
+    for (int u = 10; u < 130; ++u) {
+      const double z = a.depth.at(u, v) / camera.depth_scale;
+      const double shift = camera.fx * beside.misregistration_baseline_m / z;
+      const int x = u + static_cast<int>(std::lround(shift));
+      if (z <= 0 || x >= 150) continue;
+      least = std::min(least, shift), most = std::max(most, shift);
+      const double slack = 0.012 * z * camera.depth_scale;
+      ++compared;
+      off += std::abs(a.depth.at(u, v) - b.depth.at(x, v)) > slack;
+      off_unmoved += std::abs(a.depth.at(u, v) - b.depth.at(u, v)) > slack;
+    }
+  }
+  EXPECT_GT(most, 1.3 * least);  // near things are off by more
+  EXPECT_LT(off, compared / 25);
+  EXPECT_GT(off_unmoved, 2 * off);
+}
+
+TEST(CameraEffects, TheBorderHasNoDepth) {
+  const Scene scene = build_scene(turning_plan());
+  NoiseOptions cut = NoiseOptions::of("kinect1");
+  cut.border_right = 0.25, cut.border_top = 0.1;
+  const RenderedFrame frame = Renderer(scene, small_camera(), cut).render(50);
+  for (int v = 0; v < 120; ++v) {
+    for (int u = v < 12 ? 0 : 120; u < 160; ++u) ASSERT_EQ(frame.depth.at(u, v), 0) << u << " " << v;
+  }
+  EXPECT_GT(frame.depth.at(60, 60), 0);
+}
+
+TEST(CameraEffects, SoftOpticsSpreadAnEdgeAndKeepItsLight) {
+  constexpr int w = 40, h = 9;
+  std::vector<float> light(3 * w * h, 0.0f);
+  for (int v = 0; v < h; ++v)
+    for (int k = 0; k < 3; ++k)
+      for (int u = w / 2; u < w; ++u) light[static_cast<std::size_t>((3 * v + k) * w + u)] = 200;
+  NoiseOptions options = NoiseOptions::none();
+  Image<Rgb> sharp(w, h), soft(w, h);
+  develop(options, 0, 1, light, sharp);
+  options.softness_px = 0.8;
+  develop(options, 0, 1, light, soft);
+  EXPECT_EQ(sharp.at(w / 2 - 1, 4).r, 0);
+  EXPECT_EQ(sharp.at(w / 2, 4).r, 200);
+  EXPECT_NEAR(soft.at(w / 2 - 1, 4).g, 53, 3);  // a Gaussian's share half a pixel and more from the edge
+  EXPECT_EQ(soft.at(w / 2 - 1, 4).r + soft.at(w / 2, 4).r, 200);
+  EXPECT_EQ(soft.at(0, 0).b, 0);
+  EXPECT_EQ(soft.at(w - 1, h - 1).b, 200);
 }
 
 TEST(CameraEffects, UpsideDownIsTheImageTurned) {

@@ -88,7 +88,8 @@ Image<std::uint16_t> sense_depth(const NoiseOptions& noise, const Camera& camera
       const float d = disparity.at(u, v);
       if (d <= 0) continue;
       float z = bf / d;
-      if (noise.depth_holes && holes.at(u, bends[static_cast<std::size_t>(u)], z, incidence.at(u, v), label.at(u, v)))
+      if (noise.depth_holes &&
+          holes.at(u, bends[static_cast<std::size_t>(u)], z, incidence.at(u, v), label.at(u, v)))
         continue;
       if (noise.depth_quantisation) {
         const float steps = std::floor((d + sigma * wobble.at(u)) / step + 0.5f);

@@ -20,7 +20,7 @@ void as_kinect1(NoiseOptions& o) {
   o.auto_exposure = true, o.exposure_time_s = 0.012, o.softness_px = 0.8;
   o.rolling_shutter_s = 0.02, o.depth_delay_s = 0.012;
   o.misregistration_u_px = 0.5, o.misregistration_v_px = -1.0, o.misregistration_baseline_m = 0.003;
-  o.border_right = 0.06, o.border_top = 0.06;
+  o.image_sigma = 3.0, o.border_right = 0.06, o.border_top = 0.06;
 }
 void as_kinect2(NoiseOptions& o) {
   o.depth_min_m = 0.5, o.depth_max_m = 4.5;

@@ -53,7 +53,8 @@ inline float luminance(Rgb c) { return 0.3f * c.r + 0.59f * c.g + 0.11f * c.b; }
 // Depth in camera units; 0 where it is beyond them.
 inline std::uint16_t units_of(float depth_m, const Camera& camera) {
   const float raw = depth_m * static_cast<float>(camera.depth_scale) + 0.5f;
-  return raw >= 1 && raw < 65536 ? static_cast<std::uint16_t>(static_cast<std::int32_t>(raw)) : std::uint16_t{0};
+  return raw >= 1 && raw < 65536 ? static_cast<std::uint16_t>(static_cast<std::int32_t>(raw))
+                                 : std::uint16_t{0};
 }
 
 }  // namespace vsgraphs

@@ -123,7 +123,8 @@ Canvas keys(Rng& rng, Rgb colour) {
 // A printed page: a heading, paragraphs, often a picture or a table.
 Canvas page(Rng& rng, Rgb colour) {
   Canvas c(256, 512, colour);
-  c.headline(rng, 0.1, 0.05, 0.1 + rng.uniform(0.4, 0.75), 0.09, 6 + static_cast<int>(rng.index(5)), {30, 30, 34});
+  c.headline(rng, 0.1, 0.05, 0.1 + rng.uniform(0.4, 0.75), 0.09, 6 + static_cast<int>(rng.index(5)),
+             {30, 30, 34});
   double y = 0.13;
   while (y < 0.85) {
     const double height = rng.uniform(0.1, 0.22), end = std::min(0.95, y + height);

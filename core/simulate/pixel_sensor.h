@@ -36,7 +36,7 @@ class PixelSensor {
   bool on_painted_window(int u, int v) const { return is(SceneClass::window, u, v) && view_.pane.empty(); }
   float within_range(float z) const {
     return z >= static_cast<float>(noise_.depth_min_m) && z <= static_cast<float>(noise_.depth_max_m) ? z
-                                                                                                       : 0.0f;
+                                                                                                      : 0.0f;
   }
   // A field of noise of this frame, or of all frames alike.
   SmoothNoise& field(int spacing, Drawn drawn) { return field(rng_, spacing, drawn); }

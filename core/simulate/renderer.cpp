@@ -11,14 +11,14 @@
 namespace vsgraphs {
 namespace {
 
-constexpr double band_s = 0.001;                        // of a rolling shutter: rows within it share a moment
-constexpr double still_px = 3.5;                        // motion during an exposure that two rays show well enough
+constexpr double band_s = 0.001;  // of a rolling shutter: rows within it share a moment
+constexpr double still_px = 3.5;  // motion during an exposure that two rays show well enough
 constexpr float pane_passes = 0.88f, pane_adds = 7.0f;  // light through a pane of glass, and off it
 
 // A row's pixels first..end that see one face straight on: what the general case below works out, in loops without
 // branches.
 void read_run(const Camera& camera, const PixelForm<double>& form, int v, int first, int end,
-                 ExactDepth& out) {
+              ExactDepth& out) {
   std::uint16_t* depth = &out.depth.at(0, v);
   for (int u = first; u < end; ++u) {
     const double raw = camera.depth_scale / form.at(u, v) + 0.5;
@@ -249,7 +249,8 @@ void Renderer::tint_row(int v, int sample, const ColourRow& colour) const {
 // Of sensors whose optics are soft; the path of the image's middle at 1 m says how much is blurred.
 bool Renderer::two_rays_do(const Exposure& exposure, double time_s) const {
   if (noise_.softness_px <= 0) return false;
-  const Se3 moved = camera_at(time_s - 0.5 * exposure.time_s).inverse() * camera_at(time_s + 0.5 * exposure.time_s);
+  const Se3 moved =
+      camera_at(time_s - 0.5 * exposure.time_s).inverse() * camera_at(time_s + 0.5 * exposure.time_s);
   return camera_.fx * (so3_log(moved.rotation()).norm() + moved.translation().norm()) < still_px;
 }
 

@@ -12,14 +12,15 @@ namespace vsgraphs {
 namespace {
 
 constexpr float focal_ir_px = 580;  // at 640 columns
-constexpr float sigma_px = 0.048f;   // of disparity; with the steps it makes 0.060
-constexpr float near_m = 0.0008f;   // what does not shrink with the distance; Nguyen et al. have 1.2 mm at 0.4 m in all
+constexpr float sigma_px = 0.048f;  // of disparity; with the steps it makes 0.060
+constexpr float near_m =
+    0.0008f;  // what does not shrink with the distance; Nguyen et al. have 1.2 mm at 0.4 m in all
 constexpr float lateral_px = 0.8f;  // Nguyen et al.
 constexpr float bias_px = 0.07f;    // slow bends, the same in all frames
 constexpr float edge_limit_px = 0.4f, edge_spread_px = 0.6f, blurred_from_px = 0.3f;  // bends of disparity
 constexpr float fine_share = 0.35f;  // of what decides on losses: the rest goes by patches of a hand's size
 constexpr float glossy_loss = 0.4f;  // of screens, which throw the pattern elsewhere
-constexpr float dark_level = 42;  // grey level below which the pattern fades
+constexpr float dark_level = 42;     // grey level below which the pattern fades
 constexpr GlassAnswer glass{0.08f, 0.22f, 12, 0.1f, 0.75f, 0};
 
 // Chance of losing a reading to distance, slant and dark surfaces.

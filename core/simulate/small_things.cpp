@@ -11,9 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A sheet of a stack: turned a little, with its print on top.
-void sheet(Piece& p, const Material& print, double turn, double low, double high, double share) {
-  const double c = std::cos(turn), s = std::sin(turn);
+// A sheet of a stack: turned a little, with its print on top; so small that it stays on its footprint.
+void sheet(Piece& p, const Material& print, double turn, double low, double high) {
+  const double c = std::cos(turn), s = std::sin(turn), wide = std::abs(s);
+  const double share = std::min(p.w / (p.w * c + p.d * wide), p.d / (p.d * c + p.w * wide));
   const Eigen::Vector2d x(c * p.stand.x.x() - s * p.stand.x.y(), s * p.stand.x.x() + c * p.stand.x.y());
   const Stand stand{p.stand.origin, x};
   const double w = share * p.w, d = share * p.d;
@@ -34,8 +35,8 @@ void prism(Piece& p, const Vector3d& foot, double radius, double height, const M
   Polygon2 lid;
   for (int k = 0; k < sides; ++k) {
     const Vector3d a = corner(k), b = corner(k + 1), along = (b - a).normalized();
-    p.builder.add_rectangle(p.tag, p.stand.at(a), p.stand.direction(along), p.stand.direction(Vector3d::UnitZ()),
-                            {(b - a).norm(), height}, material);
+    p.builder.add_rectangle(p.tag, p.stand.at(a), p.stand.direction(along),
+                            p.stand.direction(Vector3d::UnitZ()), {(b - a).norm(), height}, material);
     lid.emplace_back(a.x() - foot.x() + radius, a.y() - foot.y() + radius);
   }
   p.builder.add_face(p.tag, p.stand.at(foot + Vector3d(-radius, -radius, height)),
@@ -48,7 +49,7 @@ void prism(Piece& p, const Vector3d& foot, double radius, double height, const M
 void keyboard(Piece& p) {
   const Material side{"lacquer", 7, scaled(p.colour, 0.8)};
   p.box({-p.w, -p.d, 0}, {p.w, p.d, p.h}, side, all_sides & ~(BoxSide::top | BoxSide::bottom));
-  sheet(p, {"keys", p.seed, p.colour}, 0, 0, p.h, 1);
+  sheet(p, {"keys", p.seed, p.colour}, 0, 0, p.h);
 }
 
 void papers(Piece& p) {
@@ -56,21 +57,21 @@ void papers(Piece& p) {
   const int count = std::clamp(static_cast<int>(p.h / 0.002), 1, 5);
   for (int i = 0; i < count; ++i)
     sheet(p, {"page", rng.index(12), {226, 225, 220}}, rng.uniform(-0.25, 0.25), p.h * i / count,
-          p.h * (i + 1) / count, 0.85);
+          p.h * (i + 1) / count);
 }
 
 void magazine(Piece& p) {
   Rng rng(p.seed, "magazine", 0);
-  sheet(p, {"cover", p.seed, {255, 255, 255}}, rng.uniform(-0.15, 0.15), 0, p.h, 0.92);
+  sheet(p, {"cover", p.seed, {255, 255, 255}}, rng.uniform(-0.15, 0.15), 0, p.h);
 }
 
-void mug(Piece& p) { prism(p, {0, 0, 0}, p.w, p.h, {"cover", p.seed, p.colour}); }
+void mug(Piece& p) { prism(p, {0, 0, 0}, std::min(p.w, p.d), p.h, {"cover", p.seed, p.colour}); }
 
 void pens(Piece& p) {
   Rng rng(p.seed, "pens", 0);
-  prism(p, {0, 0, 0}, p.w, 0.6 * p.h, {"lacquer", 7, {60, 66, 74}});
+  prism(p, {0, 0, 0}, std::min(p.w, p.d), 0.6 * p.h, {"lacquer", 7, {60, 66, 74}});
   for (int i = 0; i < 9; ++i) {
-    const double a = rng.uniform(0, 2 * std::numbers::pi), r = 0.6 * p.w * rng.uniform(), t = 0.004;
+    const double a = rng.uniform(0, 2 * std::numbers::pi), r = 0.6 * std::min(p.w, p.d) * rng.uniform(), t = 0.004;
     const double x = r * std::cos(a), y = r * std::sin(a);
     p.box({x - t, y - t, 0.6 * p.h}, {x + t, y + t, p.h * rng.uniform(0.75, 1.0)},
           {"lacquer", 7, random_hue(rng, 0.8, rng.uniform(0.2, 0.9))}, all_sides & ~BoxSide::bottom);

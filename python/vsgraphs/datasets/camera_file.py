@@ -4,8 +4,8 @@ Required: width, height (pixels), fx, fy, cx, cy (pixels; pixel centres at integ
 ([k1, k2, p1, p2, k3] or those names one by one), fps, depth_scale (raw units per metre, 5000 as in TUM
 where not given), depth_min, depth_max (metres), invalid_depth (raw values), depth_noise ([offset_m,
 scale_per_m, onset_m]), depth_alignment_m; model kannala_brandt (model_coefficients [k1, k2, k3, k4]) or
-rational ([k1, k2, p1, p2, k3, k4, k5, k6]), which are undone when images are read. A key that looks like a misspelt one is an error; keys that only
-describe (source, licence, ...) are accepted.
+rational ([k1, k2, p1, p2, k3, k4, k5, k6]), which are undone when images are read. A key that looks like a
+misspelt one is an error; keys that only describe (source, licence, ...) are accepted.
 """
 
 from __future__ import annotations

@@ -6,8 +6,7 @@ rational: six radial coefficients and two tangential ones, as OpenCV's (k1 k2 p1
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +20,7 @@ _FRACTION_BITS = 7
 
 
 def straightened(sequence: RecordedSequence) -> RecordedSequence:
-    """The sequence as a pinhole with the lens's focal lengths and centre sees it; the same where none is needed.
+    """The sequence as a pinhole with the lens's focal lengths and centre sees it; unchanged without a lens.
 
     Colour is blended between pixels, depth is the nearest pixel's. Raises InputError where colour has a
     camera of its own.
@@ -31,10 +30,10 @@ def straightened(sequence: RecordedSequence) -> RecordedSequence:
         return sequence
     if any(frame.colour_grid is not None for frame in sequence.frames):
         raise InputError(
-            f"{sequence.calibration.origin}: a {lens.model} lens cannot be undone where colour and depth have "
-            "cameras of their own; give images without distortion"
+            f"{sequence.calibration.origin}: a {lens.model} lens cannot be undone where colour and "
+            "depth have cameras of their own; give images without distortion"
         )
-    grid = StraightGrid(sequence.calibration)
+    grid = StraightGrid(sequence.calibration, lens)
     sequence.frames = [replace(frame, straight=grid) for frame in sequence.frames]
     sequence.warnings.append(
         f"{sequence.calibration.origin}: {lens.model} lens undone at reading, images are those of a pinhole"
@@ -61,68 +60,55 @@ def bend(lens: LensModel, x: Array, y: Array) -> tuple[Array, Array]:
     )
 
 
-@dataclass(frozen=True, eq=False)
 class StraightGrid:
     """Where each pixel of the pinhole's image lies in the lens's image."""
 
-    calibration: Calibration
-
-    def __post_init__(self) -> None:
+    def __init__(self, camera: Calibration, lens: LensModel) -> None:
         """Works out the tables: about 50 ms at 640x480."""
-        camera = self.calibration
-        v, u = np.indices((camera.height, camera.width), dtype=np.float64)
+        width, height = camera.width, camera.height
+        v, u = np.indices((height, width), dtype=np.float64)
         x, y = (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy
-        assert camera.lens is not None
-        bent_x, bent_y = bend(camera.lens, x, y)
+        bent_x, bent_y = bend(lens, x, y)
         s, t = camera.fx * bent_x + camera.cx, camera.fy * bent_y + camera.cy
-        inside = (s >= 0) & (t >= 0) & (s <= camera.width - 1) & (t <= camera.height - 1)
-        inside &= np.hypot(x, y) < _turns_back(camera.lens)
+        inside = (s >= 0) & (t >= 0) & (s <= width - 1) & (t <= height - 1)
+        inside &= np.hypot(x, y) < _turns_back(lens)
         s, t = np.where(inside, s, 0.0), np.where(inside, t, 0.0)
-        left = np.minimum(s.astype(np.int64), camera.width - 2)
-        top = np.minimum(t.astype(np.int64), camera.height - 2)
+        left, top = np.minimum(s.astype(np.int64), width - 2), np.minimum(t.astype(np.int64), height - 2)
         one = 1 << _FRACTION_BITS
-        tables = {
-            "_nearest": (np.round(t).astype(np.int64) * camera.width + np.round(s).astype(np.int64)).ravel(),
-            "_corner": (top * camera.width + left).ravel(),
-            "_across": np.round((s - left) * one).astype(np.uint16).reshape(-1, 1),
-            "_down": np.round((t - top) * one).astype(np.uint16).reshape(-1, 1),
-            "_outside": ~inside,
-        }
-        for name, table in tables.items():
-            object.__setattr__(self, name, table)
+        self._nearest = (np.round(t).astype(np.int64) * width + np.round(s).astype(np.int64)).ravel()
+        self._corner = (top * width + left).ravel()
+        self._across = np.round((s - left) * one).astype(np.uint16).reshape(-1, 1)
+        self._down = np.round((t - top) * one).astype(np.uint16).reshape(-1, 1)
+        self._outside = ~inside
 
     def colour(self, rgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
         """(h, w, 3) of the lens -> of the pinhole; black where the lens shows nothing."""
         height, width = rgb.shape[:2]
         padded = np.zeros((height, width, 4), np.uint8)
         padded[:, :, :3] = rgb
-        packed, me = padded.view(np.uint32).ravel(), self._tables()
+        packed = padded.view(np.uint32).ravel()
         one, half = 1 << _FRACTION_BITS, 1 << _FRACTION_BITS - 1
 
         def texels(shift: int) -> npt.NDArray[np.uint16]:
-            return packed.take(me["_corner"] + shift).view(np.uint8).reshape(-1, 4).astype(np.uint16)
+            return packed.take(self._corner + shift).view(np.uint8).reshape(-1, 4).astype(np.uint16)
 
-        across, down = me["_across"], me["_down"]
+        across, down = self._across, self._down
         upper = (texels(0) * (one - across) + texels(1) * across + half) >> _FRACTION_BITS
         lower = (texels(width) * (one - across) + texels(width + 1) * across + half) >> _FRACTION_BITS
         mixed = (upper * (one - down) + lower * down + half) >> _FRACTION_BITS
         out = np.ascontiguousarray(mixed.astype(np.uint8).reshape(height, width, 4)[:, :, :3])
-        out[me["_outside"]] = 0
+        out[self._outside] = 0
         return out
 
     def depth(self, depth: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint16]:
         """(h, w) of the lens -> of the pinhole; 0 where the lens shows nothing."""
-        me = self._tables()
-        out = depth.ravel().take(me["_nearest"]).reshape(depth.shape)
-        out[me["_outside"]] = 0
+        out = depth.ravel().take(self._nearest).reshape(depth.shape)
+        out[self._outside] = 0
         return out
-
-    def _tables(self) -> dict[str, Any]:
-        return self.__dict__
 
 
 def _turns_back(lens: LensModel) -> float:
-    """Radius x/z from which on the lens's image runs inwards again: what the model says there means nothing."""
+    """Radius x/z from which on the lens's image runs inwards again: there the model means nothing."""
     r = np.linspace(0.0, 4.0, 4001)
     bent, _ = bend(replace(lens, coefficients=_radial(lens)), r, np.zeros_like(r))
     falling = np.flatnonzero((np.diff(bent) <= 0) | ~np.isfinite(bent[1:]))
@@ -136,7 +122,9 @@ def _radial(lens: LensModel) -> tuple[float, ...]:
     return (k1, k2, 0.0, 0.0, *more)
 
 
-def load_straight(frame: FrameRef, grid: StraightGrid) -> tuple[Any, Any]:
+def load_straight(
+    frame: FrameRef, grid: StraightGrid
+) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint16]]:
     """Decodes a frame and undoes its lens. Raises FrameError if an image is unusable."""
     from vsgraphs.datasets.decode import load_depth, load_rgb
 

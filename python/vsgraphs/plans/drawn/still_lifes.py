@@ -1,7 +1,7 @@
 """A desk and a kitchen as recordings show them: things close by, printed, on tables; one room, no doors.
 
-Like TUM fr1/xyz (a desk from 0.7 to 1.5 m, moved along the axes by hand) and 7-Scenes redkitchen (cupboards, a
-table with magazines, from the hand), to compare the simulator with.
+Like TUM fr1/xyz (a desk from 0.7 to 1.5 m, moved along the axes by hand) and 7-Scenes redkitchen (cupboards,
+a table with magazines, from the hand), to compare the simulator with.
 """
 
 from __future__ import annotations
@@ -79,7 +79,9 @@ def _scatter(space: Space, low: Point, high: Point, z: float, count: int) -> Non
     """Pens, erasers and other small things, on whatever lies there."""
     draw = space.draw
     for _ in range(count):
-        size = draw.choose(((0.14, 0.011, 0.012), (0.045, 0.02, 0.013), (0.06, 0.05, 0.02), (0.09, 0.03, 0.02)))
+        size = draw.choose(
+            ((0.14, 0.011, 0.012), (0.045, 0.02, 0.013), (0.06, 0.05, 0.02), (0.09, 0.03, 0.02))
+        )
         at = (draw.uniform(low[0], high[0]), draw.uniform(low[1], high[1]))
         space.box(at, size, {"kind": "carton", "z": z + 0.006, "yaw_deg": draw.uniform(-90, 90)})
 
@@ -87,7 +89,9 @@ def _scatter(space: Space, low: Point, high: Point, z: float, count: int) -> Non
 def add_desk(place: Place, draw: Draw) -> None:
     """A full desk in a room; the camera goes to and fro along its axes and hardly turns."""
     w, d, back = 4.2, 5.4, 3.3
-    space = _room(place, draw, "study", (w, d), [[w / 2 + x, y] for x in (-0.8, 0.8) for y in (1.6, 3.6)], "#6c6c66")
+    space = _room(
+        place, draw, "study", (w, d), [[w / 2 + x, y] for x in (-0.8, 0.8) for y in (1.6, 3.6)], "#6c6c66"
+    )
     left, right, front = w / 2 - 1.05, w / 2 + 1.05, back - 0.95
     space.box((w / 2, back - 0.475), (2.2, 0.95, _TABLE_M), {"kind": "table", "colour": "#fffef8"})
     for x, size in ((w / 2 + 0.2, (0.52, 0.2, 0.46)), (w / 2 - 0.8, (0.42, 0.18, 0.36))):
@@ -99,8 +103,12 @@ def add_desk(place: Place, draw: Draw) -> None:
     _strew(space, (w / 2, front + 0.27), (w / 2 + 0.5, back - 0.45), _TABLE_M, _LYING[4:], 0.02)
     for low, high in ((left, w / 2 - 1.02), (w / 2 - 0.55, w / 2 - 0.1), (w / 2 + 0.5, right)):
         _strew(space, (low, back - 0.3), (high, back - 0.06), _TABLE_M, _STANDING, 0.02)
-    _scatter(space, (left, front + 0.05), (right, back - 0.35), _TABLE_M, 60)
-    space.box((w / 2 - 0.2, back + 0.5), (1.4, 0.42, 0.85), {"kind": "sideboard", "yaw_deg": 180.0, "colour": "#3c322a"})
+    _scatter(space, (left, front + 0.05), (right, back - 0.35), _TABLE_M, 110)
+    space.box(
+        (w / 2 - 0.2, back + 0.5),
+        (1.4, 0.42, 0.85),
+        {"kind": "sideboard", "yaw_deg": 180.0, "colour": "#3c322a"},
+    )
     space.box((w / 2 + 0.95, back + 0.8), (0.5, 0.5, 0.95), {"kind": "chair", "yaw_deg": 20.0})
     shelve(space, 3)
     clutter_walls(space, 0.5, (1, 2))
@@ -110,7 +118,7 @@ def add_desk(place: Place, draw: Draw) -> None:
 def _along_axes(space: Space, base: Point, height: float) -> None:
     """To and fro along x, y and z in turn, as fr1/xyz does, looking the same way."""
     reach = 0.17
-    for lap in range(3):
+    for lap in range(4):
         for axis in (0, 1, 2):
             for way in (1.0, -1.0, 0.0):
                 size = way * reach * space.draw.uniform(0.7, 1.2)
@@ -122,7 +130,9 @@ def _along_axes(space: Space, base: Point, height: float) -> None:
 def add_kitchen(place: Place, draw: Draw) -> None:
     """Cupboards along two walls, a table with chairs between them and the camera."""
     w, d = 4.6, 4.2
-    space = _room(place, draw, "kitchen", (w, d), [[w / 2 + x, d - y] for x in (-1.0, 1.0) for y in (1.7, 3.2)])
+    space = _room(
+        place, draw, "kitchen", (w, d), [[w / 2 + x, d - y] for x in (-1.0, 1.0) for y in (1.7, 3.2)]
+    )
     front = {"kind": draw.choose(("sideboard", "drawers")), "colour": "#6e2022"}
     for k in range(6):
         space.stand(2, 0.5 + 0.62 * k, (0.6, 0.58, 0.88), front)
@@ -134,15 +144,22 @@ def add_kitchen(place: Place, draw: Draw) -> None:
     space.box((0.55 * w, d - 0.12), (0.9, 0.2, 0.55), {"kind": "screen", "z": 1.45, "yaw_deg": 180.0})
     table = (0.5 * w, 0.47 * d)
     space.box(table, (1.7, 0.85, _TABLE_M), {"kind": "table", "colour": "#a47c4c"})
-    _strew(space, (table[0] - 0.7, table[1] - 0.38), (table[0] + 0.7, table[1] + 0.3), _TABLE_M, _LYING[:5], 0.25)
+    _strew(
+        space, (table[0] - 0.7, table[1] - 0.38), (table[0] + 0.7, table[1] + 0.3), _TABLE_M, _LYING[:5], 0.25
+    )
     for x, y, yaw in ((-0.4, 0.62, 180.0), (0.45, 0.6, 170.0), (1.12, 0.0, 90.0)):
-        space.box((table[0] + x, table[1] + y), (0.44, 0.44, 0.92), {"kind": "chair", "colour": "#5a3e28", "yaw_deg": yaw})
-    clutter_walls(space, 0.2)
-    y = table[1] - 0.75
-    for at, look, look_z in (
-        ((table[0] - 0.9, y), (table[0] + 0.4, d), 0.75), ((table[0], y - 0.1), (w, 0.75 * d), 0.85),
-        ((table[0] + 0.6, y), (table[0] + 0.2, d), 0.8), ((table[0] + 0.2, y - 0.2), (table[0] - 1.2, d), 0.9),
-        ((table[0] - 0.6, y), (table[0] - 0.2, table[1] + 0.4), 0.7), ((table[0] + 0.5, y - 0.1), (w, 0.5 * d), 0.8),
-        ((table[0] - 0.3, y), (0.3, 0.8 * d), 1.0), ((table[0] + 0.3, y), (table[0] + 0.1, d), 1.1),
-    ):  # fmt: skip
+        space.box(
+            (table[0] + x, table[1] + y),
+            (0.44, 0.44, 0.92),
+            {"kind": "chair", "colour": "#5a3e28", "yaw_deg": yaw},
+        )
+    clutter_walls(space, 0.14)
+    x, y = table[0], table[1] - 0.75
+    views = (
+        ((x - 0.9, y), (x + 0.4, d), 0.75), ((x, y - 0.1), (w, 0.75 * d), 0.85),
+        ((x + 0.6, y), (x + 0.2, d), 0.8), ((x + 0.2, y - 0.2), (x - 1.2, d), 0.9),
+        ((x - 0.6, y), (x - 0.2, table[1] + 0.4), 0.7), ((x + 0.5, y - 0.1), (w, 0.5 * d), 0.8),
+        ((x - 0.3, y), (0.3, 0.8 * d), 1.0), ((x + 0.3, y), (x + 0.1, d), 1.1),
+    )  # fmt: skip
+    for at, look, look_z in views:
         space.go(at, look, z=1.4 + draw.uniform(-0.1, 0.1), look_z=look_z)
