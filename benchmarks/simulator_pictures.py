@@ -32,6 +32,7 @@ PLACES = (
     ("flat", 1, "mirror"), ("flat", 1, "person"), ("flat", 2, "glass"), ("flat", 3, "floor"),
     ("flat", 2, "ceiling"),
     ("flat", 4, "cabinet"), ("office", 1, "glass"), ("office", 2, "person"), ("office", 3, "pillar"),
+    ("desk", 1, "misc"), ("kitchen", 1, "misc"),
 )  # fmt: skip
 EFFECTS: tuple[tuple[str, dict[str, Any]], ...] = (
     ("no effects", {}),

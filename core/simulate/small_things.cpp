@@ -71,7 +71,8 @@ void pens(Piece& p) {
   Rng rng(p.seed, "pens", 0);
   prism(p, {0, 0, 0}, std::min(p.w, p.d), 0.6 * p.h, {"lacquer", 7, {60, 66, 74}});
   for (int i = 0; i < 9; ++i) {
-    const double a = rng.uniform(0, 2 * std::numbers::pi), r = 0.6 * std::min(p.w, p.d) * rng.uniform(), t = 0.004;
+    const double a = rng.uniform(0, 2 * std::numbers::pi), r = 0.6 * std::min(p.w, p.d) * rng.uniform(),
+                 t = 0.004;
     const double x = r * std::cos(a), y = r * std::sin(a);
     p.box({x - t, y - t, 0.6 * p.h}, {x + t, y + t, p.h * rng.uniform(0.75, 1.0)},
           {"lacquer", 7, random_hue(rng, 0.8, rng.uniform(0.2, 0.9))}, all_sides & ~BoxSide::bottom);
