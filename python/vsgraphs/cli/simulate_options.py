@@ -35,8 +35,8 @@ def simulate(
         str | None,
         typer.Option(
             metavar="KIND",
-            help="Instead of PLAN: flat or office with glass, mirrors, shut doors, people, drawn by --seed.",
-            autocompletion=completion.chosen_from("flat", "office"),
+            help="Instead of PLAN, drawn by --seed: desk, kitchen, or flat or office with all that is hard.",
+            autocompletion=completion.chosen_from("flat", "office", "desk", "kitchen"),
         ),
     ] = None,
     robot: Annotated[
