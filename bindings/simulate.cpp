@@ -10,8 +10,8 @@
 #include "bindings/bind.h"
 #include "bindings/simulate_plan.h"
 #include "bindings/simulate_truth.h"
-#include "core/simulate/renderer.h"
-#include "core/simulate/truth.h"
+#include "simulate/renderer.h"
+#include "simulate/truth.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

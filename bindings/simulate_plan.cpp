@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/simulate/plan.h"
+#include "simulate/plan.h"
 
 namespace nb = nanobind;
 

@@ -3,7 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
-#include "core/simulate/truth.h"
+#include "simulate/truth.h"
 
 namespace vsgraphs {
 

@@ -1,5 +1,5 @@
 # vsgraphs_layer(NAME [LIBRARIES lib...] BELOW layer...)
-# One folder of core/ is one target. Sources are core/NAME/**/*.cpp; *_test.cpp files
+# One folder is one target. Sources are NAME/**/*.cpp below the list file that calls it; *_test.cpp files
 # become the test program NAME_test (a slash of the name becomes _). BELOW lists the layers it may include.
 function(vsgraphs_layer NAME)
   cmake_parse_arguments(LAYER "" "" "LIBRARIES;BELOW;TEST_LIBRARIES" ${ARGN})

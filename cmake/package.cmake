@@ -8,7 +8,7 @@ target_link_libraries(vsgraphs INTERFACE vsgraphs_system_run vsgraphs_simulate)
 install(TARGETS vsgraphs vsgraphs_abi EXPORT vsgraphs_targets COMPONENT development)
 install(EXPORT vsgraphs_targets NAMESPACE vsgraphs:: FILE vsgraphs-targets.cmake
         DESTINATION ${package} COMPONENT development)
-install(DIRECTORY core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vsgraphs COMPONENT development
+install(DIRECTORY core simulate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vsgraphs COMPONENT development
         FILES_MATCHING PATTERN "*.h" REGEX "test[^/]*\\.h$" EXCLUDE)
 
 # Before 1.0 a new minor version may change any interface.

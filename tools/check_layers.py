@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Fails on any include or import that leaves the architecture, and on words the core does without.
 
-The floors of the core are read from core/CMakeLists.txt (`vsgraphs_layer(NAME ... BELOW ...)`), those of the
+The floors of the core are read from core/CMakeLists.txt (`vsgraphs_layer(NAME ... BELOW ...)`), folders beside the
+core from CMakeLists.txt, those of the
 Python package from pyproject.toml (see python_layers.py): each is written down once.
 """
 
@@ -156,25 +157,36 @@ def without_noise(text: str) -> str:
     return _CODE_OR_NOISE.sub(blank, text)
 
 
+def layer_of(path: str, layers: dict[str, Layer]) -> str | None:
+    """Names the layer that a path from the project's root lies in: a folder of core/, or one beside it."""
+    top, _, rest = path.partition("/")
+    if top == "core":
+        return folder_of(rest, layers)
+    return top if top in layers and rest else None
+
+
 def _include_problems(
     folder: str, layers: dict[str, Layer], included: str, *, is_test: bool
 ) -> Iterator[str]:
     layer = layers[folder]
-    top, _, rest = included.partition("/")
-    if top != "core":
+    target = layer_of(included, layers)
+    if target is None:
         for rule in INCLUDE_RULES:
             if rule.forbids(included, folder.partition("/")[0], is_test=is_test):
                 yield f"includes <{included}>: {rule.reason}"
         return
-    target = folder_of(rest, layers)
     allowed = layer.below | {folder} | (layer.for_tests if is_test else frozenset())
     if target not in allowed:
-        yield f"core/{folder} includes {included}, but may include only {', '.join(sorted(allowed))}"
+        yield f"{folder} includes {included}, but may include only {', '.join(sorted(allowed))}"
 
 
 def check_cpp(root: Path) -> list[str]:
-    """Checks core/ and bindings/ below `root`; returns one line `path:line: problem` for each finding."""
-    layers = read_layers((root / "core/CMakeLists.txt").read_text())
+    """Checks core/, what stands beside it and bindings/ below `root`; a line `path:line: problem` per finding."""
+    top = root / "CMakeLists.txt"
+    beside = sorted(read_layers(top.read_text())) if top.exists() else []
+    layers = read_layers(
+        "".join(path.read_text() for path in (root / "core/CMakeLists.txt", top) if path.exists())
+    )
     problems = []
     if (culprit := cycle(layers)) is not None:
         problems.append(f"core/CMakeLists.txt: {culprit} stands below itself")
@@ -187,7 +199,8 @@ def check_cpp(root: Path) -> list[str]:
         f"core/{folder}: not declared with vsgraphs_layer() in core/CMakeLists.txt"
         for folder in sorted(holding - set(layers))
     ]
-    for path in sorted(root.glob("core/*/**/*")) + sorted(root.glob("bindings/**/*")):
+    folders = ("core/*", *beside, "bindings")
+    for path in [path for folder in folders for path in sorted(root.glob(f"{folder}/**/*"))]:
         if path.suffix not in {".h", ".cpp"}:
             continue
         name = path.relative_to(root)
@@ -200,23 +213,23 @@ def check_cpp(root: Path) -> list[str]:
 
 def _line_problems(layers: dict[str, Layer], name: Path, line: str) -> Iterator[str]:
     is_test = name.stem.endswith("_test") or name.stem.startswith("test_")
-    in_core = name.parts[0] == "core"
-    folder = folder_of("/".join(name.parts[1:]), layers)
+    folder = layer_of(name.as_posix(), layers)
     include = re.match(r'\s*#\s*include\s*(["<])([^">]+)[">]', line)
     if include:
         quote, included = include.groups()
-        if quote == '"' and included.split("/")[0] not in {"core", "bindings"} | GENERATED:
+        of_project = layer_of(included, layers) is not None or included.startswith("bindings/")
+        if quote == '"' and not of_project and included not in GENERATED:
             yield f'includes "{included}": write the path from the project\'s root'
-        elif not in_core:
+        elif folder is None:
             if included.startswith("opencv2/"):
                 yield f"includes <{included}>: the project does without OpenCV"
         elif included.startswith("bindings/"):
             yield f"includes {included}: the core knows nothing of Python"
         elif folder in layers:
             yield from _include_problems(folder, layers, included, is_test=is_test)
-    elif in_core:
+    elif folder is not None:
         for rule in WORD_RULES:
-            if rule.forbids(line, name.parts[1], is_test=is_test):
+            if rule.forbids(line, folder.partition("/")[0], is_test=is_test):
                 yield rule.reason
 
 

@@ -12,9 +12,9 @@ TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)(?! *;)\b[^;]*$", re.MULTI
 
 
 def shared_names(root: Path) -> dict[str, list[str]]:
-    """Names of types that more than one header of root/core declares, with those headers."""
+    """Names of types that more than one header of root/core and root/simulate declares, with those headers."""
     found: dict[str, set[str]] = defaultdict(set)
-    for header in sorted((root / "core").rglob("*.h")):
+    for header in sorted([*(root / "core").rglob("*.h"), *(root / "simulate").rglob("*.h")]):
         for name in TYPE.findall(header.read_text()):
             found[name].add(str(header.relative_to(root)))
     return {name: sorted(headers) for name, headers in sorted(found.items()) if len(headers) > 1}

@@ -12,7 +12,7 @@ SUFFIXES = {".cpp", ".h", ".py"}
 def main() -> int:
     """Looks at the sources of the checkout this file belongs to."""
     root = Path(__file__).resolve().parent.parent
-    folders = ("core", "bindings", "python", "tests", "tools", "benchmarks", "examples")
+    folders = ("core", "simulate", "bindings", "python", "tests", "tools", "benchmarks", "examples")
     paths = [path for folder in folders for path in (root / folder).rglob("*") if path.suffix in SUFFIXES]
     lengths = {str(path.relative_to(root)): len(path.read_text().splitlines()) for path in paths}
     long = sorted(((length, name) for name, length in lengths.items() if length > AIM), reverse=True)

@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/simulate/renderer.h"
-#include "core/simulate/testing.h"
+#include "simulate/renderer.h"
+#include "simulate/test_plan.h"
 #include "core/system/maps/test_followers.h"
 #include "core/system/run/slam.h"
 #include "core/vision/grey.h"

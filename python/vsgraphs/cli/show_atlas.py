@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+
 def show_atlas(file: Path, *, as_json: bool) -> None:
     """Prints it. Raises InputError if the file is no atlas or cannot be read."""
     from vsgraphs.compiled import core

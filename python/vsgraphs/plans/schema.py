@@ -2,7 +2,7 @@
 
 Kinds: number, whole, text, flag, point (2 numbers), size (3 numbers), colour ("#rrggbb"), points, texts, or
 another table ([table] for a list of them). `required` lists the keys without a default; the defaults live in
-core/simulate/plan.h.
+simulate/plan.h.
 """
 
 from __future__ import annotations
