@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 from vsgraphs.datasets import icl_nuim, openloris, redwood, replica, scannet, seven_scenes, tum
 from vsgraphs.datasets.calibration import Calibration
 from vsgraphs.datasets.sequence import RecordedSequence
-from vsgraphs.datasets.straighten import straightened
+from vsgraphs.datasets.straighten import StraightGrid
 from vsgraphs.errors import InputError
 
 
@@ -46,10 +47,32 @@ def open_sequence(path: str | Path, camera: str | Path | Calibration | None = No
         names = sorted(entry.name for entry in folder.iterdir())
         for reader in FORMATS:
             if reader.detect(folder):
-                return straightened(reader.open_folder(folder, camera))
+                return _straightened(reader.open_folder(folder, camera))
     except PermissionError as error:
         raise InputError(f"{error.filename or folder} may not be read: {error.strerror}") from None
     raise InputError(_nothing_found(folder, names))
+
+
+def _straightened(sequence: RecordedSequence) -> RecordedSequence:
+    """The sequence as a pinhole with the lens's focal lengths and centre sees it; unchanged without a lens.
+
+    Colour is blended between pixels, depth is the nearest pixel's. Raises InputError where colour has a
+    camera of its own.
+    """
+    lens = sequence.calibration.lens
+    if lens is None:
+        return sequence
+    if any(frame.colour_grid is not None for frame in sequence.frames):
+        raise InputError(
+            f"{sequence.calibration.origin}: a {lens.model} lens cannot be undone where colour and "
+            "depth have cameras of their own; give images without distortion"
+        )
+    grid = StraightGrid(sequence.calibration, lens)
+    sequence.frames = [replace(frame, straight=grid) for frame in sequence.frames]
+    sequence.warnings.append(
+        f"{sequence.calibration.origin}: {lens.model} lens undone at reading, images are those of a pinhole"
+    )
+    return sequence
 
 
 def _nothing_found(folder: Path, names: list[str]) -> str:

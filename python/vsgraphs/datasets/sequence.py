@@ -57,16 +57,15 @@ class FrameRef:
         """Decodes rgb (H, W, 3) uint8 and depth (H, W) uint16 raw units; FrameError if either is unusable."""
         from vsgraphs.datasets.decode import load_depth, load_rgb, load_rgb_on_grid
 
-        if self.straight is not None:
-            from vsgraphs.datasets.straighten import load_straight
-
-            return load_straight(self, self.straight)
         grid = self.colour_grid
         if grid is None:
             rgb = load_rgb(self.rgb_path, self.size)
         else:
             rgb = load_rgb_on_grid(self.rgb_path, grid.size, self.size, grid.scale, grid.offset)
-        return rgb, load_depth(self.depth_path, self.size)
+        depth = load_depth(self.depth_path, self.size)
+        if self.straight is None:
+            return rgb, depth
+        return self.straight.colour(rgb), self.straight.depth(depth)
 
 
 class Sequence(Protocol):

@@ -12,33 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.datasets.calibration import Calibration, LensModel
-from vsgraphs.datasets.sequence import FrameRef, RecordedSequence
-from vsgraphs.errors import InputError
 
 Array = npt.NDArray[np.float64]
 _FRACTION_BITS = 7
-
-
-def straightened(sequence: RecordedSequence) -> RecordedSequence:
-    """The sequence as a pinhole with the lens's focal lengths and centre sees it; unchanged without a lens.
-
-    Colour is blended between pixels, depth is the nearest pixel's. Raises InputError where colour has a
-    camera of its own.
-    """
-    lens = sequence.calibration.lens
-    if lens is None:
-        return sequence
-    if any(frame.colour_grid is not None for frame in sequence.frames):
-        raise InputError(
-            f"{sequence.calibration.origin}: a {lens.model} lens cannot be undone where colour and "
-            "depth have cameras of their own; give images without distortion"
-        )
-    grid = StraightGrid(sequence.calibration, lens)
-    sequence.frames = [replace(frame, straight=grid) for frame in sequence.frames]
-    sequence.warnings.append(
-        f"{sequence.calibration.origin}: {lens.model} lens undone at reading, images are those of a pinhole"
-    )
-    return sequence
 
 
 def bend(lens: LensModel, x: Array, y: Array) -> tuple[Array, Array]:
@@ -120,14 +96,3 @@ def _radial(lens: LensModel) -> tuple[float, ...]:
         return lens.coefficients
     k1, k2, _, _, *more = lens.filled(8)
     return (k1, k2, 0.0, 0.0, *more)
-
-
-def load_straight(
-    frame: FrameRef, grid: StraightGrid
-) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint16]]:
-    """Decodes a frame and undoes its lens. Raises FrameError if an image is unusable."""
-    from vsgraphs.datasets.decode import load_depth, load_rgb
-
-    return grid.colour(load_rgb(frame.rgb_path, frame.size)), grid.depth(
-        load_depth(frame.depth_path, frame.size)
-    )
