@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Fails on any include or import that leaves the architecture, and on words the core does without.
 
-The floors of the core are read from core/CMakeLists.txt (`vsgraphs_layer(NAME ... BELOW ...)`), folders beside the
-core from CMakeLists.txt, those of the
-Python package from pyproject.toml (see python_layers.py): each is written down once.
+The floors of the core are read from core/CMakeLists.txt (`vsgraphs_layer(NAME ... BELOW ...)`), folders
+beside the core from CMakeLists.txt, those of the Python package from pyproject.toml (see python_layers.py):
+each is written down once.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)(?! *;)\b[^;]*$", re.MULTI
 
 
 def shared_names(root: Path) -> dict[str, list[str]]:
-    """Names of types that more than one header of root/core and root/simulate declares, with those headers."""
+    """Names of types that more than one header of core and simulate declares, with those headers."""
     found: dict[str, set[str]] = defaultdict(set)
     for header in sorted([*(root / "core").rglob("*.h"), *(root / "simulate").rglob("*.h")]):
         for name in TYPE.findall(header.read_text()):
