@@ -17,6 +17,7 @@ class InputError(ValueError):
 class Result:
     status: str
     is_keyframe: bool = False
+    index: int = 0
 
     @property
     def tracked(self) -> bool:
@@ -33,6 +34,7 @@ class Slam:
         self.stamps: list[float] = []
         self.seen = 0
         self.accepted = 0  # frames that were not refused: what the core counts
+        self.first = 0  # the number it begins to count at, behind those of a loaded atlas
         self.finished = self.stopped = False
         self.segmentations: list[tuple[int, np.ndarray, np.ndarray | None, np.ndarray | None]] = []
 
@@ -43,7 +45,7 @@ class Slam:
         self.seen += 1
         if status == "refused":
             raise InputError("rgb: must be larger")
-        result = Result(status, is_keyframe=self.accepted % 5 == 0)
+        result = Result(status, is_keyframe=self.accepted % 5 == 0, index=self.first + self.accepted)
         self.accepted += 1
         if result.tracked:
             self.stamps.append(timestamp)

@@ -47,8 +47,7 @@ class KeyframeSegmentation:
     A segmenter that raises is told once and not called again; the map goes on by geometry. A FrameError
     concerns its frame alone. `tell` is called with such lines, within `track` or `finish`.
 
-    All frames of the Slam must come through here: keyframes are told by their number. Memory: `waiting`
-    images.
+    Memory: `waiting` images.
     """
 
     def __init__(
@@ -68,7 +67,6 @@ class KeyframeSegmentation:
         self.spans: list[tuple[int, int, int]] = []  # begin us (monotonic clock), duration us, frame
         self._counts: Counter[str] = Counter()
         self._untold: deque[str] = deque()
-        self._frames = 0
         self._broken = self._ended = False
         self._lock = threading.Lock()  # guards spans, counts and untold
         self._queue = KeyframeQueue(
@@ -88,11 +86,9 @@ class KeyframeSegmentation:
         `slam.track` raises.
         """
         result = self._slam.track(rgb, depth, timestamp)
-        index = self._frames
-        self._frames += 1  # the core counts a frame it refused as little as we do
         if result.is_keyframe:
             image = np.repeat(rgb[:, :, None], 3, axis=2) if rgb.ndim == 2 else rgb.copy()
-            keyframe = _Keyframe(index, image, timestamp)
+            keyframe = _Keyframe(result.index, image, timestamp)
             if self._broken:
                 self._count("failed")
             else:
