@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from vsgraphs.errors import FrameError
+from vsgraphs.errors import FrameError, InputError
 from vsgraphs.keyframe_queue import KeyframeQueue
 from vsgraphs.segment.segmentation import (
     RecordedSegmentations,
@@ -156,10 +156,10 @@ class KeyframeSegmentation:
         if found is None:
             self._count("missing")
             return
-        self._count("segmented")
         with self._lock:
             self.spans.append((int(began * 1e6), int((ended - began) * 1e6), keyframe.frame_index))
-        self._hand_over(keyframe.frame_index, found)
+        if self._hand_over(keyframe.frame_index, found):
+            self._count("segmented")
 
     def _call(self, keyframe: _Keyframe) -> Segmentation | None:
         if isinstance(self._segmenter, RecordedSegmentations):
@@ -168,15 +168,20 @@ class KeyframeSegmentation:
             found = self._segmenter(keyframe.rgb)
         return None if found is None else checked(found, self.name)
 
-    def _hand_over(self, frame_index: int, found: Segmentation) -> None:
+    def _hand_over(self, frame_index: int, found: Segmentation) -> bool:
         try:
-            self._slam.add_segmentation(frame_index, found.roles, found.confidence, found.instances)
-        except (
-            ValueError
-        ) as error:  # it was checked: a defect, and not to be taken for a frame that is refused
+            self._slam.add_segmentation(
+                frame_index, found.roles, found.confidence, found.instances, found.classes, found.class_names
+            )
+        except ValueError as error:
+            if found.classes is not None and isinstance(error, InputError):
+                self._give_up(error)  # a name whose number another one has: only the core knows all names
+                return False
+            # It was checked: a defect, and not to be taken for a frame that is refused.
             raise RuntimeError(
                 f"the core refused the segmentation of frame {frame_index}: {error}"
             ) from error
+        return True
 
     def _note_frame(self, line: str) -> None:
         with self._lock:
