@@ -1,6 +1,8 @@
 #include "bindings/images.h"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <string>
 
@@ -99,6 +101,14 @@ AnyImage view_labels(nb::handle given, const char* what, const char* expected, I
   return image;
 }
 
+std::vector<std::string> names_of(nb::handle given) {
+  std::vector<std::string> names;
+  if (nb::try_cast(given, names)) return names;
+  PyErr_Clear();
+  refuse("segmentation: class_names", "a list of texts", text_of(given.type().attr("__name__")),
+         "one name per class, class k is the k-th");
+}
+
 }  // namespace
 
 GivenFrame frame_of(nb::handle rgb_given, nb::handle depth_given, double timestamp) {
@@ -124,15 +134,19 @@ GivenFrame frame_of(nb::handle rgb_given, nb::handle depth_given, double timesta
   return given;
 }
 
-GivenSegmentation segmentation_of(nb::handle roles, nb::handle confidence, nb::handle instances) {
+GivenSegmentation segmentation_of(nb::handle roles, nb::handle confidence, nb::handle instances,
+                                  nb::handle classes, nb::handle class_names) {
   GivenSegmentation given;
-  Segmentation& into = given.segmentation;
+  Segmentation& into = given.images;
   given.roles = view_labels(roles, "roles", "uint8 of shape (height, width)", into.roles);
   if (!confidence.is_none())
     given.confidence =
         view_labels(confidence, "confidence", "float32 of shape (height, width)", into.confidence);
   if (!instances.is_none())
     given.instances = view_labels(instances, "instances", "uint16 of shape (height, width)", into.instances);
+  if (!classes.is_none())
+    given.classes = view_labels(classes, "classes", "uint16 of shape (height, width)", into.classes);
+  if (!class_names.is_none()) given.class_names = names_of(class_names);
   return given;
 }
 

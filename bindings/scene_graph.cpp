@@ -7,6 +7,7 @@
 
 #include "bindings/arrays.h"
 #include "bindings/bind.h"
+#include "bindings/classes.h"
 #include "bindings/markers.h"
 #include "core/map/map.h"
 
@@ -44,6 +45,7 @@ nb::dict plane_of(const Map& map, PlaneId id, const MappedPlane& plane) {
   d["id"] = id.index;
   d["role"] = to_string(plane.role);
   d["votes"] = votes;
+  d["class_votes"] = class_votes_of(map, plane.class_votes);
   d["normal"] = vector_of(plane.plane.normal);
   d["d"] = plane.plane.d();
   d["anchor"] = vector_of(plane.plane.project(plane.plane.anchor));

@@ -8,6 +8,7 @@
 
 #include "bindings/arrays.h"
 #include "bindings/bind.h"
+#include "bindings/classes.h"
 #include "bindings/images.h"
 #include "bindings/markers.h"
 #include "core/base/check.h"
@@ -163,6 +164,17 @@ void bind_results(nb::module_& m) {
            nb::sig("def landmarks(self) -> tuple[numpy.typing.NDArray[numpy.float64], "
                    "numpy.typing.NDArray[numpy.uint8]]"),
            "(points in the world (M, 3) float64 m, colours (M, 3) uint8)")
+      .def_prop_ro("class_names", &class_names_of, nb::sig("def class_names(self) -> list[str]"),
+                   "Of all classes that a segmenter named, sorted.")
+      .def(
+          "keyframe_classes", &keyframe_classes_of, "keyframe"_a,
+          nb::sig("def keyframe_classes(self, keyframe: int) -> dict[str, typing.Any] | None"),
+          "What a segmenter named in the image of the keyframe of that id, at the samples of its depth grid: "
+          "class_names\n"
+          "(list of str), classes ((rows, columns) uint16: 0 none, k the k-th name), confidence (float32, 0 "
+          "to "
+          "1) and\n"
+          "instances (uint16, 0: none). None where it named nothing, or there is no such keyframe.")
       .def("scene_graph", &scene_graph_of, nb::sig("def scene_graph(self) -> dict[str, typing.Any]"),
            "Planes and what is made of them, in the world (the first keyframe's camera): what "
            "vsgraphs.scene_graph.SceneGraph.from_map takes. Linear in the points kept of the planes.");
@@ -244,23 +256,30 @@ void bind_slam(nb::module_& m) {
       .def(
           "add_segmentation",
           [](Slam& slam, std::int64_t frame_index, nb::object roles, nb::object confidence,
-             nb::object instances) {
-            const GivenSegmentation given = segmentation_of(roles, confidence, instances);
+             nb::object instances, nb::object classes, nb::object class_names) {
+            const GivenSegmentation given =
+                segmentation_of(roles, confidence, instances, classes, class_names);
             const nb::gil_scoped_release release;
-            slam.add_segmentation(frame_index, given.segmentation);
+            slam.add_segmentation(frame_index, given.segmentation());
           },
           "frame_index"_a, "roles"_a.none(), "confidence"_a = nb::none(), "instances"_a = nb::none(),
+          "classes"_a = nb::none(), "class_names"_a = nb::none(),
           nb::sig("def add_segmentation(self, frame_index: int, roles: numpy.typing.NDArray[numpy.uint8], "
                   "confidence: numpy.typing.NDArray[numpy.float32] | None = None, instances: "
-                  "numpy.typing.NDArray[numpy.uint16] | None = None) -> None"),
+                  "numpy.typing.NDArray[numpy.uint16] | None = None, classes: "
+                  "numpy.typing.NDArray[numpy.uint16] | None = None, class_names: "
+                  "collections.abc.Sequence[str] | None = None) -> None"),
           "Says what the pixels of an earlier frame's image show; may come late and from any thread.\n\n"
           "Args:\n"
           "  frame_index: the frame's TrackResult.index. Frames that are no keyframes: no effect.\n"
           "  roles: (h, w) uint8, values of vsgraphs.segment.SurfaceRole; any size, stretched over the "
           "image.\n"
           "  confidence: (h, w) float32, 0 to 1; None: 1 everywhere.\n"
-          "  instances: (h, w) uint16, pieces of one thing share a number, 0: none.\n\n"
-          "Raises InputError for wrong shapes, types or values.")
+          "  instances: (h, w) uint16, pieces of one thing share a number, 0: none.\n"
+          "  classes: (h, w) uint16, the segmenter's own classes: 0 none, k the k-th of class_names.\n"
+          "  class_names: a list of up to 65535 different names, each of 1 to 128 bytes (UTF-8).\n\n"
+          "Raises InputError for wrong shapes, types or values, and for two names of one number (FNV-1a, 32 "
+          "bits).")
       .def(
           "add_markers",
           [](Slam& slam, std::int64_t frame_index, const Numbers& ids, const Reals& sizes, const Reals& poses,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,7 @@ class InputError(ValueError):
 class Result:
     status: str
     is_keyframe: bool = False
+    index: int = 0
 
     @property
     def tracked(self) -> bool:
@@ -33,8 +35,10 @@ class Slam:
         self.stamps: list[float] = []
         self.seen = 0
         self.accepted = 0  # frames that were not refused: what the core counts
+        self.first = 0  # the number it begins to count at, behind those of a loaded atlas
         self.finished = self.stopped = False
         self.segmentations: list[tuple[int, np.ndarray, np.ndarray | None, np.ndarray | None]] = []
+        self.classes: list[tuple[np.ndarray | None, Sequence[str] | None]] = []  # of each of them
 
     def track(self, rgb: np.ndarray, depth: np.ndarray, timestamp: float) -> Result:
         if depth.dtype != np.uint16:
@@ -43,18 +47,25 @@ class Slam:
         self.seen += 1
         if status == "refused":
             raise InputError("rgb: must be larger")
-        result = Result(status, is_keyframe=self.accepted % 5 == 0)
+        result = Result(status, is_keyframe=self.accepted % 5 == 0, index=self.first + self.accepted)
         self.accepted += 1
         if result.tracked:
             self.stamps.append(timestamp)
         return result
 
     def add_segmentation(
-        self, frame_index: int, roles: np.ndarray, confidence: np.ndarray | None, instances: np.ndarray | None
+        self,
+        frame_index: int,
+        roles: np.ndarray,
+        confidence: np.ndarray | None,
+        instances: np.ndarray | None,
+        classes: np.ndarray | None = None,
+        class_names: Sequence[str] | None = None,
     ) -> None:
         if self.finished:
             raise InputError("add_segmentation() after finish()")
         self.segmentations.append((frame_index, roles, confidence, instances))
+        self.classes.append((classes, class_names))
 
     def stop(self) -> None:
         self.stopped = True

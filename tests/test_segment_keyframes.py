@@ -89,6 +89,14 @@ def test_frames_the_tracker_refuses_are_not_counted() -> None:
     assert handed_over(slam) == [(0, 0), (5, 6)]
 
 
+def test_frames_are_counted_on_in_a_loaded_atlas_as_the_core_does() -> None:
+    slam = Slam()
+    slam.first = 100
+    segmentation = KeyframeSegmentation(slam, marked, beside=False)
+    track(segmentation, 0, 6)
+    assert handed_over(slam) == [(100, 0), (105, 5)], "not yesterday's keyframes of these numbers"
+
+
 def test_beside_tracking_all_come_through_when_there_is_time() -> None:
     slam = Slam()
     with attach(slam, marked) as tracked:

@@ -38,7 +38,7 @@ struct ArchiveKind {
 
 class ArchiveWriter {
  public:
-  explicit ArchiveWriter(const ArchiveKind& kind) : kind_(kind) {}
+  explicit ArchiveWriter(const ArchiveKind& kind) : kind_(kind), pools_(kind.version) {}
 
   // Shared constants among the values must live until the last call of a member function.
   template <typename... T>

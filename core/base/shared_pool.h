@@ -41,6 +41,9 @@ class SharedPools {
  public:
   static constexpr std::uint32_t none = 0xffffffff;  // the number of a null pointer
 
+  // `version`: of the format that is written.
+  explicit SharedPools(std::uint32_t version = UINT32_MAX) : version_(version) {}
+
   // The value must live as long as the pools.
   template <typename T>
   std::uint32_t number_of(const std::shared_ptr<const T>& value) {
@@ -49,7 +52,7 @@ class SharedPools {
     Pool& pool = pools_[shared_name<T>];
     const auto [at, added] =
         pool.numbers.try_emplace(value.get(), static_cast<std::uint32_t>(pool.numbers.size()));
-    if (added) FieldWriter<ByteSink>{pool.values}(*value);
+    if (added) FieldWriter<ByteSink>{pool.values, version_}(*value);
     return at->second;
   }
   // Calls add(name, count, bytes of all values) per pool, by name.
@@ -64,6 +67,7 @@ class SharedPools {
     std::unordered_map<const void*, std::uint32_t> numbers;  // never iterated
     ByteSink values;
   };
+  std::uint32_t version_;
   std::map<std::string, Pool> pools_;
 };
 

@@ -113,6 +113,11 @@ struct ClassifyPlane {
   SurfaceRole role = SurfaceRole::undecided;
   RoleVotes votes{};
 };
+// What a segmenter called it, by its own classes.
+struct SetPlaneClasses {
+  PlaneId id;
+  ClassVotes votes;
+};
 // Makes two planes the faces of one wall; an invalid `other` parts `id` from whatever it was paired with.
 struct PairFaces {
   PlaneId id;
@@ -155,6 +160,15 @@ struct MoveMarker {
   MarkerId id;
   Se3 world_from_marker;
 };
+// Of classes that a segmenter named; a name that is known stays.
+struct NameClasses {
+  ClassNames names;
+};
+// The classes a segmenter named in a keyframe's image (null: none) in place of those before.
+struct SetClasses {
+  KeyframeId id;
+  std::shared_ptr<const ClassGrid> classes;
+};
 // Where new ids begin.
 struct FirstIds {
   std::uint32_t keyframe = 0, landmark = 0, plane = 0;
@@ -181,7 +195,7 @@ using EditOperation =
                  SetPatches, AddPlane, RemovePlane, MergePlane, AddPlaneObservation, RemovePlaneObservation,
                  MovePlane, ClassifyPlane, PairFaces, SetUp, SetStructure, MoveStructureNodes, OpenMap,
                  AbsorbMap, AddMarker, RemoveMarker, AddMarkerObservation, RemoveMarkerObservations,
-                 MoveMarker>;
+                 MoveMarker, NameClasses, SetClasses, SetPlaneClasses>;
 
 struct MapEdit {
   std::uint64_t based_on = 0;  // version of the snapshot it was worked out on

@@ -106,6 +106,11 @@ void visit_fields(T& v, auto& field) {
   auto& [id, role, votes] = v;
   field(id, role, votes);
 }
+template <FieldsOf<SetPlaneClasses> T>
+void visit_fields(T& v, auto& field) {
+  auto& [id, votes] = v;
+  field(id, votes);
+}
 template <FieldsOf<PairFaces> T>
 void visit_fields(T& v, auto& field) {
   auto& [id, other, thickness_m] = v;
@@ -151,6 +156,16 @@ void visit_fields(T& v, auto& field) {
   auto& [id, world_from_marker] = v;
   field(id, world_from_marker);
 }
+template <FieldsOf<NameClasses> T>
+void visit_fields(T& v, auto& field) {
+  auto& [names] = v;
+  field(names);
+}
+template <FieldsOf<SetClasses> T>
+void visit_fields(T& v, auto& field) {
+  auto& [id, classes] = v;
+  field(id, classes);
+}
 template <FieldsOf<FirstIds> T>
 void visit_fields(T& v, auto& field) {
   auto& [keyframe, landmark, plane] = v;
@@ -168,7 +183,7 @@ void visit_fields(T& v, auto& field) {
 }
 template <FieldsOf<Map> T>
 void visit_fields(T& map, auto& field) {
-  visit_tables(map, [&field](const char*, auto& part) { field(part); });
+  visit_tables(map, [&field](const char*, auto& part, std::uint32_t = 1) { field(part); });
 }
 
 }  // namespace vsgraphs

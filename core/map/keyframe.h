@@ -10,6 +10,7 @@
 #include "core/map/depth_grid.h"
 #include "core/map/features.h"
 #include "core/map/ids.h"
+#include "core/map/label_grid.h"
 #include "core/map/surface_patch.h"
 
 namespace vsgraphs {
@@ -54,13 +55,16 @@ struct Keyframe {
   std::vector<LandmarkId> landmarks;  // per feature; invalid where none
   KeyframeId stretch;  // the first keyframe of its stretch (stretch.h); an invalid one begins one
   std::optional<OdometryStep> odometry;  // none yet while local mapping is at it
+  std::shared_ptr<const ClassGrid>
+      classes;  // that a segmenter named; null: none. Goes when the keyframe is culled
 };
 template <FieldsOf<Keyframe> T>
 void visit_fields(T& v, auto& field) {
   auto& [frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks,
-         stretch, odometry] = v;
+         stretch, odometry, classes] = v;
   field(frame_index, timestamp_s, world_from_camera, features, surface, patches, tracked_link, landmarks);
   field.since(3, stretch, odometry);
+  field.since(5, classes);
 }
 
 // What is left of a keyframe that was culled: where it stood, seen from a keyframe that stayed.

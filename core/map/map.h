@@ -38,6 +38,8 @@ class Map {
   const std::optional<Eigen::Vector3d>& up_in_world() const { return up_in_world_; }
   // Empty before rooms are sought.
   const FoundStructure& structure() const { return *structure_; }
+  // Of all classes that a segmenter named here.
+  const ClassNames& class_names() const { return *class_names_; }
   std::uint64_t version() const { return version_; }
   // Behind every id that was ever in use here; a multiple of the tables' chunks.
   FirstIds unused_ids() const;
@@ -81,7 +83,8 @@ class Map {
   // Does all of an edit's operations in order and counts one version up.
   void apply(const MapEdit& edit);
 
-  // Every part of the map under a name, as visit(name, part): what an archive holds. A new table is named here.
+  // Every part of the map under a name, as visit(name, part) or visit(name, part, since): what an archive holds, and from which
+  // format of atlases on. A new table is named here.
   template <FieldsOf<Map> T>
   friend void visit_tables(T& map, auto&& visit) {
     visit("keyframes", map.keyframes_);
@@ -92,8 +95,12 @@ class Map {
     visit("up_in_world", map.up_in_world_);
     FoundStructure structure = *map.structure_;
     visit("structure", structure);
-    if constexpr (!std::is_const_v<T>)
+    ClassNames names = *map.class_names_;
+    visit("class_names", names, 5);
+    if constexpr (!std::is_const_v<T>) {
       map.structure_ = std::make_shared<const FoundStructure>(std::move(structure));
+      map.class_names_ = std::make_shared<const ClassNames>(std::move(names));
+    }
     visit("version", map.version_);
   }
 
@@ -133,6 +140,9 @@ class Map {
   void apply_one(const AddMarkerObservation& op);
   void apply_one(const RemoveMarkerObservations& op);
   void apply_one(const MoveMarker& op);
+  void apply_one(const NameClasses& op);
+  void apply_one(const SetClasses& op);
+  void apply_one(const SetPlaneClasses& op);
   void apply_one(const OpenMap& op);
   void apply_one(const AbsorbMap& op);
   void absorb_markers(const Map& other, const Se3& world_from_other);
@@ -149,6 +159,7 @@ class Map {
   RetiredKeyframes retired_;
   std::optional<Eigen::Vector3d> up_in_world_;
   std::shared_ptr<const FoundStructure> structure_ = std::make_shared<const FoundStructure>();
+  std::shared_ptr<const ClassNames> class_names_ = std::make_shared<const ClassNames>();
   std::uint64_t version_ = 0;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 using test::full_map;
 
-constexpr ArchiveKind kind{"TEST_MAP", 3, "map"};
+constexpr ArchiveKind kind{"TEST_MAP", 5, "map"};
 
 Bytes bytes_of(const Map& map) {
   ArchiveWriter archive(kind);
@@ -58,6 +58,18 @@ TEST(MapArchive, ValuesComeBack) {
     EXPECT_EQ(here, there);
     EXPECT_FALSE(here.empty());
   });
+  EXPECT_EQ(back.class_names(), map.class_names());
+  EXPECT_EQ(back.class_names().size(), 2U);
+  const ClassGrid& classes = *map.keyframes().find(map.keyframes().at_index(2))->classes;
+  const ClassGrid& same = *back.keyframes().find(back.keyframes().at_index(2))->classes;
+  EXPECT_EQ(same.classes, classes.classes);
+  EXPECT_EQ(same.which, classes.which);
+  EXPECT_EQ(same.confidences, classes.confidences);
+  EXPECT_EQ(same.instances, classes.instances);
+  const PlaneId called = map.planes().at_index(1);
+  EXPECT_EQ(back.planes().find(called)->class_votes, map.planes().find(called)->class_votes);
+  const SurfacePatch* patch = back.patch(back.planes().find(called)->observations[0]);
+  EXPECT_THAT(patch->class_votes, testing::SizeIs(1));
   EXPECT_EQ(back.covisible(back.keyframes().at_index(2), 1), map.covisible(map.keyframes().at_index(2), 1));
   ASSERT_EQ(back.structure().rooms.size(), 2U);
   EXPECT_EQ(back.structure().rooms[0].kind, RoomKind::corridor);

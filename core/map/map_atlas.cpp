@@ -32,6 +32,7 @@ void Map::apply_one(const AbsorbMap& op) {
     changed.next_number = other.structure_->next_number;
     structure_ = std::make_shared<const FoundStructure>(std::move(changed));
   }
+  apply_one(NameClasses{*other.class_names_});
   if (by.matrix().isIdentity(0)) return;
   const auto move = [this, &by](auto id, const auto& thing) { apply_one(moved(id, thing, by)); };
   other.keyframes_.for_each(move);

@@ -15,7 +15,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Changes the part of a map that is of this type.
 template <typename Part, typename Change>
 void in(Map& map, Change&& change) {
-  visit_tables(map, [&](const char*, auto& part) {
+  visit_tables(map, [&](const char*, auto& part, std::uint32_t = 1) {
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(part)>, Part>) change(part);
   });
 }
@@ -127,6 +127,32 @@ TEST_F(MapChecks, PlanesAndMarkersAreSeenBySomething) {
   EXPECT_EQ(marker([](MappedMarker& m) { m.size_m = nan; }), "a marker that is nowhere");
   EXPECT_EQ(marker([](MappedMarker& m) { m.observations[0].covariance(3, 4) = nan; }),
             "a marker that is nowhere");
+}
+
+TEST_F(MapChecks, ClassesHaveTheNamesOfTheirNumbers) {
+  EXPECT_EQ(after<ClassNames>([](ClassNames& names) { names.erase(class_id("chair")); }),
+            "a class without a name")
+      << "of a keyframe's classes";
+  EXPECT_EQ(after<ClassNames>([](ClassNames& names) { names.at(class_id("chair")) = "table"; }),
+            "a class whose name is not its own");
+  EXPECT_EQ(after<ClassNames>([](ClassNames& names) { names[class_id("\xff")] = "\xff"; }),
+            "a class whose name is not its own");
+  const auto called = [this](const ClassVotes& votes) {
+    return after<Map::Planes>([&](auto& table) { table.edit(table.at_index(1))->class_votes = votes; });
+  };
+  EXPECT_EQ(called({{class_id("chair"), 1}}), "");
+  EXPECT_EQ(called({{class_id("table"), 1}}), "a class without a name");
+  EXPECT_EQ(called({{class_id("chair"), -1}}), "a plane that is nowhere");
+  const auto seen = [this](const ClassVotes& votes) {
+    return after_keyframe([&](Keyframe& keyframe) {
+      KeyframeSurfaces surfaces = *keyframe.patches;
+      surfaces.patches[0].class_votes = votes;
+      keyframe.patches = std::make_shared<const KeyframeSurfaces>(surfaces);
+    });
+  };
+  EXPECT_EQ(seen({{class_id("table"), 1}}), "a class without a name");
+  EXPECT_EQ(seen({{class_id("chair"), std::numeric_limits<float>::infinity()}}),
+            "a keyframe that is nowhere, or saw what cannot be");
 }
 
 TEST_F(MapChecks, RoomsDoorsFloorsAndPlacesNameWhatIsThere) {

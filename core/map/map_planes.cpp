@@ -75,6 +75,7 @@ void Map::apply_one(const MergePlane& op) {
   }
   MappedPlane& into = *planes_.edit(op.into);
   for (std::size_t i = 0; i < surface_role_count; ++i) into.votes[i] += merged.votes[i];
+  add_votes(into.class_votes, merged.class_votes, 1);
 }
 
 void Map::apply_one(const AddPlaneObservation& op) {
@@ -103,6 +104,21 @@ void Map::apply_one(const ClassifyPlane& op) {
     plane->role = op.role;
     plane->votes = op.votes;
   }
+}
+
+void Map::apply_one(const NameClasses& op) {
+  ClassNames names = *class_names_;
+  names.insert(op.names.begin(), op.names.end());
+  if (names.size() > class_names_->size())
+    class_names_ = std::make_shared<const ClassNames>(std::move(names));
+}
+
+void Map::apply_one(const SetClasses& op) {
+  if (Keyframe* keyframe = keyframes_.edit(op.id)) keyframe->classes = op.classes;
+}
+
+void Map::apply_one(const SetPlaneClasses& op) {
+  if (MappedPlane* plane = planes_.edit(op.id)) plane->class_votes = op.votes;
 }
 
 void Map::apply_one(const PairFaces& op) {

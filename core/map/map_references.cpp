@@ -93,6 +93,26 @@ Wrong wrong_with_planes(const Map& map) {
   return wrong;
 }
 
+Wrong wrong_with_classes(const Map& map) {
+  const ClassNames& names = map.class_names();
+  const auto unnamed = [&names](const KeyframeSurfaces* surfaces) {
+    return surfaces &&
+           !std::all_of(surfaces->patches.begin(), surfaces->patches.end(),
+                        [&](const SurfacePatch& patch) { return are_named(patch.class_votes, names); });
+  };
+  bool named = true;
+  map.keyframes().for_each([&](KeyframeId, const Keyframe& keyframe) {
+    named = named && !unnamed(keyframe.patches.get());
+    if (!keyframe.classes) return;
+    for (const ClassId id : keyframe.classes->classes) named = named && names.contains(id);
+  });
+  map.retired_keyframes().for_each(
+      [&](KeyframeId, const RetiredKeyframe& retired) { named = named && !unnamed(retired.patches.get()); });
+  map.planes().for_each(
+      [&](PlaneId, const MappedPlane& plane) { named = named && are_named(plane.class_votes, names); });
+  return named ? nullptr : "a class without a name";
+}
+
 Wrong wrong_with_markers(const Map& map) {
   for (const auto& [id, marker] : map.markers()) {
     if (!marker) return "a marker that is nowhere";
@@ -161,7 +181,7 @@ Wrong wrong_with_rooms(const FoundStructure& structure) {
 
 Wrong wrong_with_references(const Map& map) {
   for (const auto check : {wrong_with_keyframes, wrong_with_anchors, wrong_with_landmarks, wrong_with_planes,
-                           wrong_with_markers}) {
+                           wrong_with_markers, wrong_with_classes}) {
     if (Wrong wrong = check(map)) return wrong;
   }
   if (Wrong wrong = wrong_with_surfaces_of(map.structure(), map)) return wrong;

@@ -29,7 +29,7 @@ bool is_sane(const KeyframeSurfaces* surfaces) {
   return std::all_of(surfaces->patches.begin(), surfaces->patches.end(), [](const SurfacePatch& patch) {
     return is_plane(patch.plane) && within(patch.information, most_information) && patch.samples >= 0 &&
            patch.area_m2 >= 0 && within(static_cast<double>(patch.area_m2), most_metres * most_metres) &&
-           all_within(patch.votes) &&
+           all_within(patch.votes) && are_sane(patch.class_votes) &&
            std::all_of(patch.points.begin(), patch.points.end(),
                        [](const Eigen::Vector3f& point) { return within(point, most_metres); });
   });
@@ -139,11 +139,15 @@ Wrong wrong_with_values(const Map& map) {
     if (!is_sane(landmark)) wrong = "a landmark that is nowhere";
   });
   map.planes().for_each([&](PlaneId, const MappedPlane& plane) {
-    if (!is_plane(plane.plane) || !all_within(plane.votes) || !within(plane.thickness_m, most_metres))
+    if (!is_plane(plane.plane) || !all_within(plane.votes) || !are_sane(plane.class_votes) ||
+        !within(plane.thickness_m, most_metres))
       wrong = "a plane that is nowhere";
   });
   for (const auto& [id, marker] : map.markers()) {
     if (!marker || !is_sane(*marker)) wrong = "a marker that is nowhere";
+  }
+  for (const auto& [id, name] : map.class_names()) {
+    if (!is_class_name(name) || class_id(name) != id) wrong = "a class whose name is not its own";
   }
   if (map.up_in_world() && !is_unit(*map.up_in_world())) wrong = "an upward direction that is none";
   return wrong ? wrong : wrong_with_structure(map.structure());

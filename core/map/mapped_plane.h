@@ -29,11 +29,13 @@ struct MappedPlane {
   // The other face of the same wall, looking the other way, and the distance between them.
   PlaneId other_face;
   double thickness_m = 0;
+  ClassVotes class_votes{};  // what a segmenter called it, by its own classes
 };
 template <FieldsOf<MappedPlane> T>
 void visit_fields(T& v, auto& field) {
-  auto& [plane, role, votes, observations, other_face, thickness_m] = v;
+  auto& [plane, role, votes, observations, other_face, thickness_m, class_votes] = v;
   field(plane, role, votes, observations, other_face, thickness_m);
+  field.since(5, class_votes);
 }
 
 }  // namespace vsgraphs

@@ -9,6 +9,7 @@
 
 #include "core/base/fields.h"
 #include "core/geometry/plane.h"
+#include "core/map/class_votes.h"
 
 namespace vsgraphs {
 
@@ -31,12 +32,14 @@ struct SurfacePatch {
   std::vector<Eigen::Vector3f> points;  // camera frame, thinned out: its extent
   int samples = 0;                      // of the depth grid, on the plane
   float area_m2 = 0;
-  RoleVotes votes{};  // of a segmenter; all zero without one
+  RoleVotes votes{};         // of a segmenter; all zero without one
+  ClassVotes class_votes{};  // likewise, by its own classes
 };
 template <FieldsOf<SurfacePatch> T>
 void visit_fields(T& v, auto& field) {
-  auto& [plane, information, points, samples, area_m2, votes] = v;
+  auto& [plane, information, points, samples, area_m2, votes, class_votes] = v;
   field(plane, information, points, samples, area_m2, votes);
+  field.since(5, class_votes);
 }
 
 struct KeyframeSurfaces {

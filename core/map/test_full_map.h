@@ -24,10 +24,18 @@ inline std::shared_ptr<const KeyframeSurfaces> some_patches(int count) {
     patch.samples = 40;
     patch.area_m2 = 0.5F;
     patch.votes[1] = 0.25F;
+    if (i == 1) patch.class_votes = {{class_id("picture"), 0.25F}};
     surfaces.patches.push_back(patch);
   }
   surfaces.labelled = true;
   return std::make_shared<const KeyframeSurfaces>(std::move(surfaces));
+}
+
+inline std::shared_ptr<const ClassGrid> some_classes() {
+  const ClassId picture = class_id("picture"), chair = class_id("chair");
+  LabelGrid labels{3, 2, {}, {{picture, "picture"}, {chair, "chair"}}};
+  labels.samples = {{SurfaceRole::wall, 1, 0, picture}, {}, {SurfaceRole::other, 0.5F, 7, chair}, {}, {}, {}};
+  return classes_of(labels);
 }
 
 inline FoundStructure some_structure(PlaneId wall, PlaneId ground) {
@@ -74,6 +82,7 @@ inline void add_points(Map& map) {
   const Camera camera;
   const auto points = point_grid(6, 4);
   std::vector<KeyframeId> keyframes;
+  map.apply(NameClasses{{{class_id("picture"), "picture"}, {class_id("chair"), "chair"}}});
   for (int i = 0; i < 4; ++i) {
     Keyframe keyframe = keyframe_seeing(camera, standing_at(0.1 * i), points);
     keyframe.frame_index = 10 * i;
@@ -82,6 +91,7 @@ inline void add_points(Map& map) {
     if (i == 2) keyframe.tracked_link = TrackedLink{keyframes[0], standing_at(0.2), Matrix6d::Identity()};
     keyframes.push_back(add_keyframe(map, keyframe));
     map.apply(SetPatches{keyframes.back(), some_patches(3)});
+    if (i > 1) map.apply(SetClasses{keyframes.back(), some_classes()});
   }
   map.apply(SetOdometry{keyframes[2], {}});
   map.apply(SetOdometry{keyframes[3], {keyframes[2], standing_at(0.1), 1e-4 * Matrix6d::Identity()}});
@@ -103,6 +113,7 @@ inline void add_planes(Map& map) {
     MappedPlane plane;
     plane.role = i == 0 ? SurfaceRole::ground : SurfaceRole::wall;
     plane.votes[1] = 0.5F;
+    if (i == 1) plane.class_votes = {{class_id("picture"), 0.5F}};
     planes.push_back(map.planes().next_id());
     map.apply(AddPlane{planes.back(), plane});
     map.apply(AddPlaneObservation{planes.back(), {keyframe, i}});

@@ -18,6 +18,7 @@ MapEdit SceneBuilder::associate(KeyframeId id, const Snapshot& snapshot, const S
     draft.record(SetPatches{id, std::make_shared<const KeyframeSurfaces>(extract_planes(
                                     *keyframe.surface, labels, camera_, options_.extraction))});
   }
+  if (labels) keep_classes(id, *labels, draft);
   const Span span(trace, "associate_planes");
   const std::vector<SurfacePatch>& patches = draft.map().keyframes().find(id)->patches->patches;
   std::vector<PlacedPatch> placed;
@@ -37,10 +38,31 @@ MapEdit SceneBuilder::associate(KeyframeId id, const Snapshot& snapshot, const S
   return draft.take();
 }
 
+// What has a class and lies on no plane is kept too: nothing decides yet what becomes of it.
+void SceneBuilder::keep_classes(KeyframeId id, const LabelGrid& labels, Draft& draft) {
+  ClassNames fresh;
+  for (const auto& [number, name] : labels.class_names)
+    if (!draft.map().class_names().contains(number)) fresh.emplace(number, name);
+  if (!fresh.empty()) draft.record(NameClasses{std::move(fresh)});
+  auto classes = classes_of(labels);
+  if (classes || draft.map().keyframes().find(id)->classes) draft.record(SetClasses{id, std::move(classes)});
+}
+
+// Before planes are merged, of which the surfaces learn with the edit; whichever way is up, or while nobody knows.
+void SceneBuilder::call_planes(const SurfaceKeeper& surfaces, Draft& draft) {
+  for (const PlaneId id : surfaces.changed()) {
+    const KnownSurface* known = surfaces.find(id);
+    const MappedPlane* plane = draft.map().planes().find(id);
+    if (known && plane && known->class_votes() != plane->class_votes)
+      draft.record(SetPlaneClasses{id, known->class_votes()});
+  }
+}
+
 MapEdit SceneBuilder::interpret(KeyframeId keyframe, const Snapshot& snapshot, const SurfaceKeeper& surfaces,
                                 TraceSink* trace) const {
   const Span span(trace, "interpret_planes");
   Draft draft(snapshot);
+  call_planes(surfaces, draft);
   std::set<PlaneId> touched = surfaces.seen_by(keyframe);
   touched.insert(surfaces.moved().begin(), surfaces.moved().end());
   for (const PlaneMerge& m : find_merges(draft.map(), surfaces, touched, options_.association))

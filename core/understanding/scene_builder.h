@@ -65,6 +65,8 @@ class SceneBuilder {
   // Says which are something else now.
   std::set<PlaneId> classify(const std::vector<PlaneId>& planes, const SurfaceKeeper& surfaces,
                              Draft& draft) const;
+  static void call_planes(const SurfaceKeeper& surfaces, Draft& draft);
+  static void keep_classes(KeyframeId id, const LabelGrid& labels, Draft& draft);
   SurfaceRole judge(const Map& map, const SurfaceKeeper& surfaces, PlaneId id, RoleVotes& votes) const;
   bool another_is_the_wall(const Map& map, const SurfaceKeeper& surfaces, PlaneId id) const;
   static SurfaceFacts facts_of(const Map& map, const MappedPlane& plane, const KnownSurface& known,

@@ -161,6 +161,56 @@ TEST_F(SceneBuilderTest, ManySmallPostersDoNotOutvoteTheirWall) {
   EXPECT_EQ(plane(wall[0]).role, SurfaceRole::wall);
 }
 
+// Upper half of the image a class, lower half another; their roles stay undecided.
+LabelGrid named_halves(LabelGrid labels, const std::string& above, const std::string& below) {
+  for (std::size_t i = 0; i < labels.samples.size(); ++i)
+    labels.samples[i].named = class_id(i < labels.samples.size() / 2 ? above : below);
+  labels.class_names = {{class_id(above), above}, {class_id(below), below}};
+  return labels;
+}
+
+TEST_F(SceneBuilderTest, AWallHasTheVotesOfWhatItWasCalledAndItsKeyframesKeepTheRest) {
+  walk();
+  const PlaneId wall = planes_at({0, 3, 1}, south)[0];
+  ASSERT_THAT(plane(wall).class_votes, IsEmpty());
+  const LabelGrid labels = named_halves(all_labelled(SurfaceRole::undecided, 0.8F), "picture", "carpet");
+  map.keyframes().for_each([&](KeyframeId id, const Keyframe&) { propose(id, &labels); });
+  const ClassVotes& votes = plane(wall).class_votes;
+  EXPECT_EQ(votes, surfaces.find(wall)->class_votes());
+  const auto votes_for = [&votes](const std::string& name) {
+    float weight = 0;
+    for (const ClassVote& vote : votes) weight += vote.id == class_id(name) ? vote.weight : 0;
+    return weight;
+  };
+  EXPECT_GT(votes_for("picture"), 3 * votes_for("carpet")) << "the floor has most of the lower half";
+  EXPECT_NEAR(votes_for("picture") + votes_for("carpet"), 3 * 0.8F, 1e-3F) << "a keyframe has one vote";
+  EXPECT_EQ(plane(wall).role, SurfaceRole::wall) << "of which classes decide nothing";
+  EXPECT_THAT(map.class_names(), SizeIs(2));
+  map.keyframes().for_each([&](KeyframeId, const Keyframe& keyframe) {
+    ASSERT_NE(keyframe.classes, nullptr);
+    EXPECT_EQ(keyframe.classes->which.size(), keyframe.surface->samples.size());
+  });
+}
+
+TEST_F(SceneBuilderTest, AKeyframeRelabelledTakesItsClassesBack) {
+  walk();
+  const PlaneId wall = planes_at({0, 3, 1}, south)[0];
+  const KeyframeId id{1, 0};
+  const LabelGrid named = named_halves(all_labelled(SurfaceRole::undecided, 0.8F), "picture", "carpet");
+  const LabelGrid renamed = named_halves(all_labelled(SurfaceRole::undecided, 0.8F), "mirror", "carpet");
+  propose(id, &named);
+  ASSERT_FALSE(plane(wall).class_votes.empty());
+  propose(id, &renamed);
+  for (const ClassVote& vote : plane(wall).class_votes) EXPECT_NE(vote.id, class_id("picture"));
+  EXPECT_EQ(plane(wall).class_votes, surfaces.find(wall)->class_votes());
+  const LabelGrid unnamed = all_labelled(SurfaceRole::undecided, 0.8F);
+  propose(id, &unnamed);
+  EXPECT_THAT(plane(wall).class_votes, IsEmpty());
+  EXPECT_THAT(surfaces.find(wall)->class_votes(), IsEmpty());
+  EXPECT_EQ(map.keyframes().find(id)->classes, nullptr);
+  EXPECT_THAT(map.class_names(), SizeIs(3)) << "names stay";
+}
+
 TEST_F(SceneBuilderTest, ANetworkDoesNotMakeACurtainAWall) {
   world.sheet({-0.7, 2.88, 0.4}, {1.6, 0, 0}, {0, 0, 1.8});
   walk();

@@ -99,8 +99,9 @@ void KnownSurface::count_keyframe(KeyframeId stretch, const Se3& stretch_from_ca
   piece.keyframes += sign;
 }
 
-void KnownSurface::count_votes(const RoleVotes& votes, float sign) {
-  for (std::size_t r = 0; r < votes.size(); ++r) votes_[r] += sign * votes[r];
+void KnownSurface::count_votes(const SurfaceVotes& votes, float sign) {
+  for (std::size_t r = 0; r < surface_role_count; ++r) votes_.roles[r] += sign * votes.roles[r];
+  add_votes(votes_.classes, votes.classes, sign);
 }
 
 void KnownSurface::count_rays(KeyframeId stretch, const MetRays& rays, const StretchPoses& stretches,

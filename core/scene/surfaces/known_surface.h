@@ -16,6 +16,12 @@ namespace vsgraphs {
 // Where each stretch's frame stands: world_from_stretch by the stretch's name.
 using StretchPoses = std::map<KeyframeId, Se3>;
 
+// Of a segmenter: sums of confidences by role and by the segmenter's own classes.
+struct SurfaceVotes {
+  RoleVotes roles{};
+  ClassVotes classes;
+};
+
 struct SurfacePiece {
   PlaneExtent extent;
   PlaneEvidence evidence;
@@ -37,7 +43,8 @@ class KnownSurface {
   // --- what is known, in the world ---
   const PlaneExtent& extent() const { return extent_; }
   const PlaneEvidence& evidence() const { return evidence_; }
-  const RoleVotes& votes() const { return votes_; }
+  const RoleVotes& votes() const { return votes_.roles; }
+  const ClassVotes& class_votes() const { return votes_.classes; }
   double largest_patch_m2() const { return largest_m2_; }
   int keyframes() const;
   // Means over the keyframes that observe it, and over their patches. Linear in the stretches.
@@ -56,7 +63,7 @@ class KnownSurface {
   void count_patch(KeyframeId stretch, const Se3& stretch_from_camera, const SurfacePatch& patch,
                    const StretchPoses& stretches, int sign);
   void count_keyframe(KeyframeId stretch, const Se3& stretch_from_camera, int sign);
-  void count_votes(const RoleVotes& votes, float sign);
+  void count_votes(const SurfaceVotes& votes, float sign);
   void set_largest_patch(double area_m2) { largest_m2_ = area_m2; }
   void count_rays(KeyframeId stretch, const MetRays& rays, const StretchPoses& stretches, bool observes_it);
   // Evidence and extents of a plane that turned out to be this one.
@@ -71,8 +78,9 @@ class KnownSurface {
 
   template <FieldsOf<KnownSurface> T>
   friend void visit_fields(T& v, auto& field) {
-    field(v.pieces_, v.extent_, v.evidence_, v.reference_, v.placed_, v.votes_, v.largest_m2_, v.centre_,
-          v.radius_m_);
+    field(v.pieces_, v.extent_, v.evidence_, v.reference_, v.placed_, v.votes_.roles, v.largest_m2_,
+          v.centre_, v.radius_m_);
+    field.since(5, v.votes_.classes);
   }
 
  private:
@@ -85,7 +93,7 @@ class KnownSurface {
   PlaneEvidence evidence_;
   KeyframeId reference_;              // the stretch with which the whole moves
   std::map<KeyframeId, Se3> placed_;  // reference_from_stretch, as the whole was put together
-  RoleVotes votes_{};
+  SurfaceVotes votes_;
   double largest_m2_ = 0;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double radius_m_ = 0;

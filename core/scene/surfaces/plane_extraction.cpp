@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -167,6 +168,7 @@ SurfacePatch Extraction::condense(const std::vector<int>& members, const PlaneFi
   patch.samples = static_cast<int>(members.size());
   const auto spacing = static_cast<float>(options_.point_spacing_m);
   std::set<std::tuple<int, int, int>> taken;
+  std::map<ClassId, float> named;
   const double solid_angle = grid_.step_px * grid_.step_px / (camera_.fx * camera_.fy);
   double area = 0;
   for (const int m : members) {
@@ -180,10 +182,13 @@ SurfacePatch Extraction::condense(const std::vector<int>& members, const PlaneFi
     if (taken.insert({voxel.x(), voxel.y(), voxel.z()}).second) patch.points.push_back(on_plane);
     const LabelSample l = label(i);
     if (l.role != SurfaceRole::undecided) patch.votes[static_cast<std::size_t>(l.role)] += l.confidence;
+    if (!l.named.none()) named[l.named] += l.confidence;
   }
   patch.area_m2 = static_cast<float>(area);
-  // One vote per keyframe, shared among the roles its pixels name.
+  // One vote per keyframe, shared among the roles, and the classes, its pixels name.
   for (float& vote : patch.votes) vote /= static_cast<float>(members.size());
+  for (const auto& [id, sum] : named)
+    patch.class_votes.push_back({id, sum / static_cast<float>(members.size())});
   return patch;
 }
 

@@ -1,7 +1,7 @@
 // From one keyframe's depth grid to its planar patches: regions grown over the organised samples, each by the plane it has so
 // far (Holz and Behnke, "Fast Range Image Segmentation and Smoothing Using Approximate Surface Reconstruction and Region
 // Growing", IAS 2012), grown again from the refined plane, and condensed to nine numbers. Labels keep regions apart:
-// pixels of different class or instance never share one.
+// pixels of different role or instance never share one. A segmenter's own classes are counted, and part nothing.
 #pragma once
 
 #include "core/base/options.h"

@@ -140,5 +140,33 @@ TEST(PlaneExtraction, AKeyframeHasOneVoteOfTheLabelsConfidence) {
   EXPECT_EQ(unsure[static_cast<std::size_t>(SurfaceRole::wall)], 0) << "too little confidence says nothing";
 }
 
+TEST(PlaneExtraction, AWallHalfOfWhichIsCalledPictureHasVotesOfBothClasses) {
+  const DepthGrid grid = view(wall_ahead(), straight_ahead());
+  LabelGrid labels = labels_for(grid);
+  const ClassId wall = class_id("wall"), picture = class_id("picture");
+  for (int i = 0; i < grid.columns * grid.rows; ++i)
+    labels.samples[static_cast<std::size_t>(i)] = {SurfaceRole::wall, 0.8F, 0,
+                                                   i % grid.columns < grid.columns / 2 ? wall : picture};
+  const KeyframeSurfaces found = extract(grid, &labels);
+  ASSERT_THAT(found.patches, SizeIs(1)) << "a class parts nothing";
+  const ClassVotes& votes = found.patches[0].class_votes;
+  ASSERT_THAT(votes, SizeIs(2));
+  for (const ClassVote& vote : votes) EXPECT_NEAR(vote.weight, 0.4F, 0.01F);
+  EXPECT_TRUE(are_named(votes, {{wall, "wall"}, {picture, "picture"}}));
+  EXPECT_TRUE(are_sane(votes));
+  EXPECT_NEAR(found.patches[0].votes[static_cast<std::size_t>(SurfaceRole::wall)], 0.8F, 0.01F);
+}
+
+TEST(PlaneExtraction, AClassCountsWhereTheRoleIsUndecidedToo) {
+  const DepthGrid grid = view(wall_ahead(), straight_ahead());
+  LabelGrid labels = labels_for(grid);
+  for (LabelSample& l : labels.samples) l = {SurfaceRole::undecided, 0.75F, 0, class_id("curtain")};
+  const ClassVotes votes = extract(grid, &labels).patches.at(0).class_votes;
+  ASSERT_THAT(votes, SizeIs(1));
+  EXPECT_NEAR(votes[0].weight, 0.75F, 1e-3F);
+  for (LabelSample& l : labels.samples) l.confidence = 0.05F;
+  EXPECT_THAT(extract(grid, &labels).patches.at(0).class_votes, SizeIs(0)) << "too little confidence";
+}
+
 }  // namespace
 }  // namespace vsgraphs

@@ -140,14 +140,16 @@ void SurfaceKeeper::settle(const Map& map) {
   }
 }
 
-RoleVotes SurfaceKeeper::votes_of(const Told& told, PlaneId plane) const {
+SurfaceVotes SurfaceKeeper::votes_of(const Told& told, PlaneId plane) const {
   float all = 0;
   for (const Sight& s : told.sights) all += s.plane == plane ? told.patches->patches[s.patch].area_m2 : 0;
-  RoleVotes votes{};
+  SurfaceVotes votes;
   for (const Sight& s : told.sights) {
     if (s.plane != plane || !(all > 0)) continue;
     const SurfacePatch& patch = told.patches->patches[s.patch];
-    for (std::size_t r = 0; r < surface_role_count; ++r) votes[r] += patch.area_m2 / all * patch.votes[r];
+    const float share = patch.area_m2 / all;
+    for (std::size_t r = 0; r < surface_role_count; ++r) votes.roles[r] += share * patch.votes[r];
+    add_votes(votes.classes, patch.class_votes, share);
   }
   return votes;
 }

@@ -75,7 +75,7 @@ class SurfaceKeeper : public Follower {
   void settle(const Map& map);
   void settle_touched(const Map& map);
   void find_largest_patch(const Map& map, PlaneId plane);
-  RoleVotes votes_of(const Told& told, PlaneId plane) const;
+  SurfaceVotes votes_of(const Told& told, PlaneId plane) const;
   static bool sees(const Told& told, PlaneId plane);
   template <typename Change>
   void change_sights(const Map& map, PlaneId plane, KeyframeId keyframe, const Change& change);

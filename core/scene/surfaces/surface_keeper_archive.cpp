@@ -38,7 +38,8 @@ Wrong wrong_with(const KnownSurface& known, const StretchPoses& stretches) {
   if (!known.fits_together()) return "surfaces that do not fit together";
   if (!is_frame(known.extent().frame()) || !is_frame(known.evidence().frame()))
     return "a surface that is nowhere";
-  if (!are_sane(known.votes()) || !within(known.largest_patch_m2(), most_metres * most_metres) ||
+  if (!are_sane(known.votes()) || !are_sane(known.class_votes()) ||
+      !within(known.largest_patch_m2(), most_metres * most_metres) ||
       !within(known.centre(), 2 * most_metres) || !within(known.radius_m(), 2 * most_metres))
     return "a surface of no size";
   for (const auto& [stretch, piece] : known.pieces()) {
@@ -60,6 +61,7 @@ Wrong SurfaceKeeper::wrong_with(const Map& map) const {
   for (const auto& [id, known] : known_) {
     if (!map.planes().contains(id)) return "what is known of a plane that does not exist";
     if (Wrong wrong = vsgraphs::wrong_with(known, stretches_)) return wrong;
+    if (!are_named(known.class_votes(), map.class_names())) return "a surface of a class without a name";
   }
   for (const auto& [id, told] : told_) {
     const std::size_t patches = told.patches ? told.patches->patches.size() : 0;

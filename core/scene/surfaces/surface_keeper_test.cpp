@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/base/rng.h"
 #include "core/base/test_archive.h"
 #include "core/map/map_archive.h"
@@ -15,12 +17,15 @@ namespace {
 
 using namespace test;
 
-constexpr ArchiveKind kind{"SURFACES", 3, "test"};
+constexpr ArchiveKind kind{"SURFACES", 5, "test"};
+constexpr ClassId left_half{5}, right_half{9};
 
 // A map whose planes are the walls y = 3 + 4 i, each by three ids that may be merged.
 class FollowedMap {
  public:
-  explicit FollowedMap(std::uint64_t seed) : rng_(seed, "followed_map", 0) {}
+  explicit FollowedMap(std::uint64_t seed) : rng_(seed, "followed_map", 0) {
+    map.apply(NameClasses{{{left_half, "left"}, {right_half, "right"}}});
+  }
 
   Map map;
   SurfaceKeeper keeper;
@@ -54,6 +59,8 @@ class FollowedMap {
       patch.plane = plane_at(middle, -Eigen::Vector3d::UnitY()).transformed(camera_from_world);
       patch.area_m2 = static_cast<float>(rng_.uniform(0.2, 1));
       patch.votes[1] = static_cast<float>(rng_.uniform(0, 1));
+      // What one half of the walls is called goes with the role's votes, so that they can be compared.
+      patch.class_votes = {{s < 0 ? left_half : right_half, patch.votes[1]}};
       for (double a = -0.6; a <= 0.6; a += 0.05)
         for (double b = -0.6; b <= 0.6; b += 0.05)
           patch.points.push_back((camera_from_world * (middle + Eigen::Vector3d(a, 0, b))).cast<float>());
@@ -142,6 +149,11 @@ class FollowedMap {
 // Of one's points, the share that the other has near.
 double share_found(const PlaneExtent& of, const PlaneExtent& in) { return in.share_near(of.points(), 0.15); }
 
+double weight_of(const ClassVotes& votes, ClassId id) {
+  const auto at = std::find_if(votes.begin(), votes.end(), [id](const ClassVote& v) { return v.id == id; });
+  return at == votes.end() ? 0 : static_cast<double>(at->weight);
+}
+
 void expect_like_gathered(const FollowedMap& followed) {
   SurfaceKeeper anew;
   anew.gather(followed.map);
@@ -152,6 +164,8 @@ void expect_like_gathered(const FollowedMap& followed) {
     EXPECT_EQ(known->keyframes(), right->keyframes());
     EXPECT_NEAR(known->largest_patch_m2(), right->largest_patch_m2(), 1e-6);
     EXPECT_NEAR(static_cast<double>(known->votes()[1]), static_cast<double>(right->votes()[1]), 1e-3);
+    for (const ClassId half : {left_half, right_half})
+      EXPECT_NEAR(weight_of(known->class_votes(), half), weight_of(right->class_votes(), half), 5e-3);
     EXPECT_LT((known->mean_camera(followed.keeper.stretches()) - right->mean_camera(anew.stretches())).norm(),
               0.05);
     EXPECT_LT((known->mean_middle(followed.keeper.stretches()) - right->mean_middle(anew.stretches())).norm(),
@@ -212,6 +226,8 @@ class SurfaceKeeperRays : public ::testing::Test {
   }
   void look(KeyframeId id, const Se3& pose) {
     SurfacePatch patch;
+    patch.area_m2 = 1;
+    if (map_.class_names().contains(class_id("picture"))) patch.class_votes = {{class_id("picture"), 0.5F}};
     patch.plane = plane_at({0, 3, 1}, -Eigen::Vector3d::UnitY()).transformed(pose.inverse());
     for (double s = -0.5; s <= 0.5; s += 0.05)
       for (double t = -0.5; t <= 0.5; t += 0.05)
@@ -255,6 +271,7 @@ TEST_F(SurfaceKeeperRays, AreCountedOnceHoweverOftenTheKeyframeIsLookedAt) {
 }
 
 TEST_F(SurfaceKeeperRays, ComeBackFromAnArchiveWithAllElse) {
+  apply({NameClasses{{{class_id("picture"), "picture"}}}});
   for (const double x : {-0.2, 0.0, 0.2}) see(looking({x, 0, 1}, {x, 3, 1}));
   ArchiveWriter writer(kind);
   save_map(writer, "m", map_);
@@ -269,6 +286,8 @@ TEST_F(SurfaceKeeperRays, ComeBackFromAnArchiveWithAllElse) {
   const KnownSurface &known = *keeper_.find(wall_), &other = *back.find(wall_);
   EXPECT_EQ(other.extent().points(), known.extent().points());
   EXPECT_EQ(other.keyframes(), known.keyframes());
+  ASSERT_EQ(known.class_votes().size(), 1U);
+  EXPECT_EQ(other.class_votes(), known.class_votes());
   for (const double x : {-0.7, 0.5, 1.15})
     EXPECT_EQ(other.evidence().solid_at({x, 3, 1}), known.evidence().solid_at({x, 3, 1}));
   Map elsewhere;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/text.h"
+
 namespace vsgraphs {
 
 namespace {
@@ -37,20 +39,14 @@ bool share_ids(const AtlasState& state) {
   });
 }
 
-// UTF-8 (RFC 3629), as whoever prints it expects; overlong forms pass.
-bool is_text(const std::string& text) {
-  int to_come = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool goes_on = (byte & 0xc0) == 0x80;
-    if (goes_on != (to_come > 0)) return false;
-    if (goes_on)
-      --to_come;
-    else
-      to_come = byte < 0x80 ? 0 : byte < 0xe0 ? 1 : byte < 0xf0 ? 2 : byte < 0xf8 ? 3 : -1;
-    if (to_come < 0) return false;
-  }
-  return to_come == 0;
+// Maps may be joined, and then know the same classes.
+bool name_differently(const AtlasState& state) {
+  ClassNames all;
+  return !std::all_of(state.maps.begin(), state.maps.end(), [&all](const MapState& one) {
+    const ClassNames& names = one.map->class_names();
+    return std::all_of(names.begin(), names.end(),
+                       [&all](const auto& named) { return all.insert(named).first->second == named.second; });
+  });
 }
 
 Wrong wrong_with(const MapState& state) {
@@ -81,6 +77,7 @@ Wrong wrong_with_atlas(const SavedAtlas& atlas) {
     if (Wrong wrong = wrong_with(state)) return wrong;
   }
   if (share_ids(atlas.state)) return "ids that are not its maps' own";
+  if (name_differently(atlas.state)) return "two classes of one number";
   return nullptr;
 }
 

@@ -16,7 +16,7 @@
 
 namespace vsgraphs {
 
-inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 4, "atlas"};
+inline constexpr ArchiveKind atlas_kind{"VSGATLAS", 5, "atlas"};
 
 struct SavedAtlas {
   AtlasState state;

@@ -8,7 +8,7 @@
 #include "core/base/rng.h"
 #include "core/base/test_archive.h"
 #include "core/map/test_depth_row.h"
-#include "core/map/test_map.h"
+#include "core/map/test_full_map.h"
 #include "core/scene/space/space_keeper.h"
 #include "core/system/maps/followers.h"
 
@@ -21,6 +21,19 @@ MapState gathered(Map& map) {
   followers.start(map, {});
   Followers(followers).catch_up(map, true, [](const char*, const auto& work) { return work(), true; });
   return {map.snapshot(), followers};
+}
+
+// A wall that a segmenter has called a picture, in part.
+void add_named_plane(Map& map, KeyframeId seen_by) {
+  map.apply(NameClasses{{{class_id("picture"), "picture"}, {class_id("chair"), "chair"}}});
+  map.apply(SetPatches{seen_by, test::some_patches(2)});
+  map.apply(SetClasses{seen_by, test::some_classes()});
+  MappedPlane plane;
+  plane.plane = {-Eigen::Vector3d::UnitZ(), {0, 0, 3}, 0};
+  plane.class_votes = {{class_id("picture"), 0.25F}};
+  const PlaneId id = map.planes().next_id();
+  map.apply(AddPlane{id, plane});
+  map.apply(AddPlaneObservation{id, {seen_by, 1}});
 }
 
 // Two keyframes with landmarks and depth; `first_name` sets how the points look, so that two maps differ, and `first` where
@@ -38,6 +51,7 @@ MapState some_map(int first_name, const FirstIds& first) {
   }
   test::add_landmarks(map, points, keyframes);
   map.apply(RemoveKeyframe{keyframes[1], keyframes[0]});
+  add_named_plane(map, keyframes[0]);
   map.apply(AddMarker{{7}, {0.2, Se3{}, {}}});
   map.apply(AddMarkerObservation{{7}, {keyframes[0], Se3{}, Matrix6d::Identity()}});
   map.apply(MapEdit{});
@@ -167,6 +181,34 @@ TEST(AtlasFile, KeyframesOfFormat2AreCutIntoStretches) {
   for (std::uint32_t index = 64; index < map.retired_keyframes().index_bound(); ++index)
     EXPECT_EQ(map.stretch_of(map.retired_keyframes().at_index(index)), first);
   EXPECT_EQ(error_of(bytes_of(atlas)), "");
+}
+
+TEST(AtlasFile, MapsOfFormat4KnowNoClasses) {
+  const SavedAtlas now = some_atlas();
+  ASSERT_FALSE(now.state.maps[1].map->class_names().empty());
+  const SavedAtlas atlas = read_atlas("FILE", of_format(4, now));
+  EXPECT_EQ(atlas.format, 4U);
+  for (const MapState& state : atlas.state.maps) {
+    EXPECT_TRUE(state.map->class_names().empty());
+    state.map->planes().for_each(
+        [](PlaneId, const MappedPlane& plane) { EXPECT_TRUE(plane.class_votes.empty()); });
+    state.map->keyframes().for_each(
+        [](KeyframeId, const Keyframe& keyframe) { EXPECT_EQ(keyframe.classes, nullptr); });
+  }
+  EXPECT_EQ(error_of(bytes_of(atlas)), "");
+}
+
+TEST(AtlasFile, MapsThatNameOneNumberDifferentlyCannotBe) {
+  SavedAtlas atlas = some_atlas();
+  const auto name = [&atlas](std::size_t i, const std::string& text) {
+    Map map = *atlas.state.maps[i].map;
+    map.apply(NameClasses{{{class_id(text), text}}});
+    atlas.state.maps[i].map = map.snapshot();
+  };
+  name(0, "liquid");
+  EXPECT_EQ(error_of(bytes_of(atlas)), "");
+  name(1, "costarring");
+  EXPECT_THAT(error_of(bytes_of(atlas)), testing::HasSubstr("two classes of one number"));
 }
 
 TEST(AtlasFile, RevisionsAreReadOffTheFile) {

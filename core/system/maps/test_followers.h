@@ -46,6 +46,12 @@ inline void expect_like(const SurfaceKeeper& followed, const SurfaceKeeper& gath
     EXPECT_GT(known->extent().share_near(right->extent().points(), 0.15), 0.95);
     EXPECT_GT(share_agreed(*known, *right), 0.95);
     EXPECT_GT(share_agreed(*right, *known), 0.95);
+    ASSERT_EQ(known->class_votes().size(), right->class_votes().size());
+    for (std::size_t i = 0; i < known->class_votes().size(); ++i) {
+      EXPECT_EQ(known->class_votes()[i].id, right->class_votes()[i].id);
+      EXPECT_NEAR(static_cast<double>(known->class_votes()[i].weight),
+                  static_cast<double>(right->class_votes()[i].weight), 1e-2);
+    }
     for (std::size_t r = 0; r < surface_role_count; ++r)
       EXPECT_NEAR(static_cast<double>(known->votes()[r]), static_cast<double>(right->votes()[r]), 1e-2);
   });

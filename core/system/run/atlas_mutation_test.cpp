@@ -69,13 +69,25 @@ MapState furnished(const MapState& state) {
   return {map.snapshot(), followers};
 }
 
+// With a segmenter that calls one half of each keyframe's image a picture and the other a wall.
+void track_named(Slam& slam, const RgbdFrame& frame) {
+  static const std::vector<std::string> names{"picture", "wall"};
+  const TrackedFrame tracked = slam.track(frame);
+  if (!tracked.keyframe_request) return;
+  const Image<std::uint8_t> roles(width, height, 0);
+  Image<std::uint16_t> classes(width, height, 1);
+  for (int v = 0; v < height / 2; ++v)
+    for (int u = 0; u < width; ++u) classes.at(u, v) = 2;
+  slam.add_segmentation(tracked.index, {roles.view(), {}, classes.view(), classes.view(), names});
+}
+
 // Two maps: a walk along the wall, and one along another piece of it after a while in the dark.
 SavedAtlas two_walks() {
   WallScene scene;
   Slam slam(configured("serial"), small_camera());
-  for (int px = 0; px <= 160; px += 8) slam.track(scene.seen_from(px));
+  for (int px = 0; px <= 160; px += 8) track_named(slam, scene.seen_from(px));
   for (int i = 0; i < 16; ++i) slam.track(scene.in_the_dark());
-  for (int px = 520; px <= 640; px += 8) slam.track(scene.seen_from(px));
+  for (int px = 520; px <= 640; px += 8) track_named(slam, scene.seen_from(px));
   slam.finish();
   SavedAtlas atlas;
   atlas.state = slam.atlas_state();
@@ -159,7 +171,10 @@ class AtlasMutations : public testing::Test {
       map.room_at(keyframe.world_from_camera.translation());
       if (state.places()) state.places()->query(*keyframe.features, 5);
     });
-    map.planes().for_each([&](PlaneId, const MappedPlane& plane) { map.observed_centre(plane); });
+    map.planes().for_each([&](PlaneId, const MappedPlane& plane) {
+      map.observed_centre(plane);
+      for (const ClassVote& vote : plane.class_votes) map.class_names().at(vote.id);
+    });
     for (const auto& [id, marker] : map.markers()) map.sightings(*marker);
     count({state.map});
   }
@@ -175,7 +190,9 @@ class AtlasMutations : public testing::Test {
 };
 
 TEST_F(AtlasMutations, AreRefusedOrCanBeGoneOnIn) {
-  ASSERT_EQ(read_atlas("FILE", whole_).state.maps.size(), 2U);
+  const SavedAtlas untouched = read_atlas("FILE", whole_);
+  ASSERT_EQ(untouched.state.maps.size(), 2U);
+  for (const MapState& state : untouched.state.maps) ASSERT_EQ(state.map->class_names().size(), 2U);
   const char* wanted = std::getenv("VSGRAPHS_MUTATIONS");
 #ifdef __SANITIZE_THREAD__
   constexpr int usual_rounds = 10;  // there is one thread here

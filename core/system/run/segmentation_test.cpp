@@ -77,5 +77,56 @@ TEST_F(SegmentationTest, WhatMakesNoSenseIsNamed) {
   EXPECT_THAT(complaint({no_role.view(), {}, {}}), HasSubstr("7 is no role"));
 }
 
+class ClassesTest : public SegmentationTest {
+ protected:
+  std::string complaint_of(const std::vector<std::string>& names) const {
+    return complaint({roles.view(), {}, {}, classes.view(), names});
+  }
+  Image<std::uint16_t> classes{640, 480, 0};
+};
+
+TEST_F(ClassesTest, ASampleHasTheClassOfItsPixelByTheNumberOfItsName) {
+  classes.at(8 * 10 + 4, 8 * 20 + 4) = 3;
+  const std::vector<std::string> names{"wall", "table", "chair"};
+  const LabelGrid grid = sample_labels({roles.view(), {}, {}, classes.view(), names}, camera);
+  EXPECT_EQ(grid.samples[20 * 80 + 10].named, class_id("chair"));
+  EXPECT_TRUE(grid.samples[20 * 80 + 11].named.none());
+  EXPECT_EQ(grid.samples[20 * 80 + 10].role, SurfaceRole::wall) << "beside its role";
+  EXPECT_EQ(grid.class_names, (ClassNames{{class_id("chair"), "chair"}})) << "those that occur";
+}
+
+TEST_F(ClassesTest, WhatMakesNoSenseIsNamed) {
+  EXPECT_EQ(complaint_of({"wall", std::string(128, 'x'), "T\xc3\xbcr"}), "");
+  EXPECT_THAT(complaint_of({}), HasSubstr("classes without class_names"));
+  EXPECT_THAT(complaint_of({"wall", ""}), HasSubstr("the name of class 2 must be a text of 1 to 128 bytes"));
+  for (const std::string bad : {std::string(129, 'x'), std::string("a\nb"), std::string("\xff")})
+    EXPECT_THAT(complaint_of({bad}), HasSubstr("the name of class 1 must be"));
+  EXPECT_THAT(complaint_of({"wall", "chair", "wall"}), HasSubstr("class name 'wall' is there twice"));
+  EXPECT_THAT(complaint_of({"costarring", "liquid"}),
+              testing::AllOf(HasSubstr("'costarring'"), HasSubstr("'liquid'"), HasSubstr("one number")));
+  EXPECT_THAT(complaint_of(std::vector<std::string>(65536, "x")),
+              HasSubstr("65536 class names; at most 65535"));
+  const std::vector<std::string> names{"wall"};
+  EXPECT_THAT(complaint({roles.view(), {}, {}, {}, names}), HasSubstr("class_names without classes"));
+  const Image<std::uint16_t> narrow(320, 480, 1);
+  EXPECT_THAT(complaint({roles.view(), {}, {}, narrow.view(), names}), HasSubstr("classes has another size"));
+  classes.at(4, 4) = 2;
+  EXPECT_THAT(complaint_of(names), HasSubstr("class 2 is beyond the 1 of class_names"));
+}
+
+TEST(ClassRegister, KnowsOneNameOfANumber) {
+  const ClassId number = class_id("liquid");
+  ASSERT_EQ(number, class_id("costarring"));
+  ClassRegister known;
+  known.take({{number, "liquid"}});
+  known.take({{number, "liquid"}, {class_id("wall"), "wall"}});
+  try {
+    known.take({{number, "costarring"}});
+    FAIL() << "two names of one number";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("'liquid'"), HasSubstr("'costarring'")));
+  }
+}
+
 }  // namespace
 }  // namespace vsgraphs

@@ -79,7 +79,9 @@ Slam::Slam(const Config& config, const Camera& camera, const AtlasState& known,
       first_index_(first_index_after(known)),
       last_timestamp_s_(-std::numeric_limits<double>::infinity()),
       lost_(has_keyframes(known)),
-      starts_lost_(lost_) {}
+      starts_lost_(lost_) {
+  for (const MapState& state : known.maps) classes_.take(state.map->class_names());
+}
 
 Slam::~Slam() {
   if (::getpid() != process_) static_cast<void>(executor_.release());
@@ -146,6 +148,7 @@ void Slam::note_status(const TrackedFrame& frame) {
 void Slam::add_segmentation(std::int64_t frame_index, const Segmentation& segmentation) {
   require_own_process();
   auto labels = std::make_shared<const LabelGrid>(sample_labels(segmentation, camera_));
+  classes_.take(labels->class_names);
   if (!finished_) executor_->label(frame_index, std::move(labels));
 }
 

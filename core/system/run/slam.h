@@ -59,7 +59,8 @@ class Slam {
 
   // A segmentation of the image of an earlier frame (TrackedFrame::index). Any thread, before finish(); afterwards, and
   // for frames that are no keyframes, it has no effect. `roles`: any size, stretched over the image; `confidence` 0..1
-  // (empty: 1 everywhere) and `instances` (empty: none) of the same size. Throws InputError for other sizes or values.
+  // (empty: 1 everywhere), `instances` and `classes` (empty: none) of the same size. Throws InputError for other sizes or values, for
+  // classes beyond `class_names`, and for a name whose number (class_id) another one has in this run or in the maps it began with.
   void add_segmentation(std::int64_t frame_index, const Segmentation& segmentation);
 
   // Markers seen in the image of an earlier frame, in place of what was said of it before; when and where as above. A number
@@ -110,6 +111,7 @@ class Slam {
   std::unique_ptr<Executor> executor_;
   AtlasVersion loaded_;
   FrameRecords records_;
+  ClassRegister classes_;
   mutable std::mutex warnings_mutex_;  // held for as long as it takes to copy the lines
   std::vector<std::string> warnings_;
   std::atomic<std::int64_t> frames_ = 0;

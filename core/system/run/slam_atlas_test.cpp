@@ -22,7 +22,17 @@ class Walk {
   explicit Walk(const Config& config, const AtlasState& known = {})
       : config_(config), slam_(config, small_camera(), known) {}
 
-  TrackStatus see(int px) { return slam_.track(scene_.seen_from(px)).status; }
+  TrackStatus see(int px) {
+    const TrackedFrame seen = slam_.track(scene_.seen_from(px));
+    if (!class_names_.empty() && seen.keyframe_request) {
+      const Image<std::uint8_t> roles(width, height, 0);
+      const Image<std::uint16_t> classes(width, height, 1);
+      slam_.add_segmentation(seen.index, {roles.view(), {}, {}, classes.view(), class_names_});
+    }
+    return seen.status;
+  }
+  // What a segmenter calls all that keyframes see from here on.
+  void call_all(const std::string& name) { class_names_ = {name}; }
   // Dark for 1.6 s: time enough to be carried anywhere.
   void cover() {
     for (int i = 0; i < 16; ++i) slam_.track(scene_.in_the_dark());
@@ -61,6 +71,7 @@ class Walk {
  private:
   Config config_;
   WallScene scene_;
+  std::vector<std::string> class_names_;
   Slam slam_;
 };
 
@@ -102,6 +113,42 @@ TEST(Atlas, WhereNothingIsKnownANewMapStartsAndIsJoinedOnComingBack) {
   EXPECT_EQ(walk.slam().trajectory().size(), static_cast<std::size_t>(s.tracked));
   EXPECT_LT(walk.largest_error_m(), 0.03) << "all of it in the first map's world";
   EXPECT_THAT(s.warnings, testing::ElementsAre(testing::HasSubstr("lost"), testing::HasSubstr("new map")));
+}
+
+TEST(Atlas, AJoinedMapKnowsTheClassesOfBothAndItsWallsTheVotesOfBoth) {
+  Walk walk(configured("serial"));
+  walk.call_all("wall");
+  walk.walk(0, 160);
+  walk.cover();
+  walk.call_all("picture");
+  walk.walk(520, 120);
+  walk.finish();
+  ASSERT_EQ(walk.slam().statistics().merges, 1);
+  const Snapshot map = walk.slam().snapshot();
+  const ClassId wall = class_id("wall"), picture = class_id("picture");
+  EXPECT_EQ(map->class_names(), (ClassNames{{wall, "wall"}, {picture, "picture"}}));
+  float as_wall = 0, as_picture = 0;
+  map->planes().for_each([&](PlaneId, const MappedPlane& plane) {
+    for (const ClassVote& vote : plane.class_votes) (vote.id == wall ? as_wall : as_picture) += vote.weight;
+  });
+  EXPECT_GT(as_wall, 1);
+  EXPECT_GT(as_picture, 1);
+}
+
+TEST(Atlas, ARunIsToldOfAClassWhoseNumberAnotherHasInTheMapsItBeganWith) {
+  Walk yesterday(configured("serial"));
+  yesterday.call_all("liquid");
+  yesterday.walk(0, 160);
+  yesterday.finish();
+  Walk today(configured("serial"), yesterday.slam().atlas_state());
+  today.call_all("costarring");
+  try {
+    today.walk(40, 160);
+    FAIL() << "nothing said";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("'liquid'"), testing::HasSubstr("'costarring'")));
+  }
 }
 
 TEST(Atlas, WithoutAWayBackTheMapMostWasMadeOfIsGivenOut) {

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from vsgraphs.errors import FrameError
+from vsgraphs.errors import FrameError, InputError
 from vsgraphs.keyframe_queue import KeyframeQueue
 from vsgraphs.segment.segmentation import (
     RecordedSegmentations,
@@ -47,8 +47,7 @@ class KeyframeSegmentation:
     A segmenter that raises is told once and not called again; the map goes on by geometry. A FrameError
     concerns its frame alone. `tell` is called with such lines, within `track` or `finish`.
 
-    All frames of the Slam must come through here: keyframes are told by their number. Memory: `waiting`
-    images.
+    Memory: `waiting` images.
     """
 
     def __init__(
@@ -68,7 +67,6 @@ class KeyframeSegmentation:
         self.spans: list[tuple[int, int, int]] = []  # begin us (monotonic clock), duration us, frame
         self._counts: Counter[str] = Counter()
         self._untold: deque[str] = deque()
-        self._frames = 0
         self._broken = self._ended = False
         self._lock = threading.Lock()  # guards spans, counts and untold
         self._queue = KeyframeQueue(
@@ -88,11 +86,9 @@ class KeyframeSegmentation:
         `slam.track` raises.
         """
         result = self._slam.track(rgb, depth, timestamp)
-        index = self._frames
-        self._frames += 1  # the core counts a frame it refused as little as we do
         if result.is_keyframe:
             image = np.repeat(rgb[:, :, None], 3, axis=2) if rgb.ndim == 2 else rgb.copy()
-            keyframe = _Keyframe(index, image, timestamp)
+            keyframe = _Keyframe(result.index, image, timestamp)
             if self._broken:
                 self._count("failed")
             else:
@@ -160,10 +156,10 @@ class KeyframeSegmentation:
         if found is None:
             self._count("missing")
             return
-        self._count("segmented")
         with self._lock:
             self.spans.append((int(began * 1e6), int((ended - began) * 1e6), keyframe.frame_index))
-        self._hand_over(keyframe.frame_index, found)
+        if self._hand_over(keyframe.frame_index, found):
+            self._count("segmented")
 
     def _call(self, keyframe: _Keyframe) -> Segmentation | None:
         if isinstance(self._segmenter, RecordedSegmentations):
@@ -172,15 +168,20 @@ class KeyframeSegmentation:
             found = self._segmenter(keyframe.rgb)
         return None if found is None else checked(found, self.name)
 
-    def _hand_over(self, frame_index: int, found: Segmentation) -> None:
+    def _hand_over(self, frame_index: int, found: Segmentation) -> bool:
         try:
-            self._slam.add_segmentation(frame_index, found.roles, found.confidence, found.instances)
-        except (
-            ValueError
-        ) as error:  # it was checked: a defect, and not to be taken for a frame that is refused
+            self._slam.add_segmentation(
+                frame_index, found.roles, found.confidence, found.instances, found.classes, found.class_names
+            )
+        except ValueError as error:
+            if found.classes is not None and isinstance(error, InputError):
+                self._give_up(error)  # a name whose number another one has: only the core knows all names
+                return False
+            # It was checked: a defect, and not to be taken for a frame that is refused.
             raise RuntimeError(
                 f"the core refused the segmentation of frame {frame_index}: {error}"
             ) from error
+        return True
 
     def _note_frame(self, line: str) -> None:
         with self._lock:

@@ -6,7 +6,8 @@
     classes.json    {"classes": {"wall": 1, "floor": 2, ...}, "roles": {"floor": "ground", ...}}
                     without it, the "classes" of scene_gt.json
 
-What `vsgraphs simulate` writes. Without "roles", a class has the role its name speaks for (`role_of_class`).
+What `vsgraphs simulate` writes. Names are handed on as classes, beside the roles. Without "roles", a class
+has the role its name speaks for (`role_of_class`).
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from PIL import Image
 from vsgraphs.datasets.lists import read_list, stamp_of
 from vsgraphs.errors import FrameError, InputError
 from vsgraphs.reading import open_regular, shown
+from vsgraphs.segment.classes import ClassTable, check_name
 from vsgraphs.segment.fields import Fields, read_object
 from vsgraphs.segment.roles import RoleTable, SurfaceRole, role_named, role_of_class
 from vsgraphs.segment.segmentation import Segmentation
@@ -45,7 +47,7 @@ class LabelFolder:
         rows.sort(key=lambda row: row[0])
         self._stamps = [stamp for stamp, _ in rows]
         self._files = [[folder / name for name in names] for _, names in rows]
-        self._roles = _role_table(folder)
+        self._roles, self._classes = _tables(folder)
 
     def at(self, timestamp_s: float) -> Segmentation | None:
         """The class image of that time, to 1 ms; None if there is none. FrameError: it cannot be read."""
@@ -63,10 +65,12 @@ class LabelFolder:
             roles = self._roles.roles(classes)
         except InputError as error:
             raise FrameError(f"{label}: {error}") from None
-        return Segmentation(roles, None, instances)
+        if not self._classes.names:
+            return Segmentation(roles, None, instances)
+        return Segmentation(roles, None, instances, self._classes.classes(classes), self._classes.names)
 
 
-def _role_table(folder: Path) -> RoleTable:
+def _tables(folder: Path) -> tuple[RoleTable, ClassTable]:
     for name in ("classes.json", "scene_gt.json"):
         path = folder / name
         if path.is_file():
@@ -84,13 +88,15 @@ def _role_table(folder: Path) -> RoleTable:
     for key, value in classes.items():
         if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= 65535:
             raise InputError(f"{path}: class {shown(key)} must have a value from 0 to 65535")
+        check_name(key, f"{path}: classes")
     roles = {value: role_of_class(key) for key, value in classes.items()}
     given = data.get("roles", {})
     Fields(given, f"{path}: roles", tuple(classes))
     roles.update({classes[key]: role_named(role, f"{path}: roles") for key, role in given.items()})
     if not any(role not in (SurfaceRole.undecided, SurfaceRole.other) for role in roles.values()):
         raise InputError(f'{path}: no class is wall, ground, ceiling, door or window; say which in "roles"')
-    return RoleTable(roles, str(path), count=0)
+    names = {value: key for key, value in classes.items()}
+    return RoleTable(roles, str(path), count=0), ClassTable(names, f"{path}: classes")
 
 
 def _load(path: Path) -> npt.NDArray[np.uint16]:

@@ -37,12 +37,12 @@ def _semantic(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segmentation:
     best = np.take_along_axis(scores, classes[None], axis=0)[0]
     if sidecar.output.values == "logits":
         best = 1 / np.exp(scores - best).sum(axis=0)  # softmax of the largest
-    return Segmentation(sidecar.roles.roles(classes), np.clip(best, 0, 1))
+    return Segmentation(sidecar.roles.roles(classes), np.clip(best, 0, 1), None, *sidecar.named(classes))
 
 
 def _semantic_argmax(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segmentation:
     classes = _plane(tensors["classes"], "classes", sidecar)
-    return Segmentation(sidecar.roles.roles(classes))
+    return Segmentation(sidecar.roles.roles(classes), None, None, *sidecar.named(classes))
 
 
 def _panoptic_masks(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segmentation:
@@ -74,8 +74,10 @@ def _panoptic_masks(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segment
     instances = np.zeros(shape, np.uint16)
     confidence = np.zeros(shape, np.float32)
     roles = np.zeros(shape, np.uint8)
+    class_of, names = sidecar.named(classes[kept])
+    named = None if class_of is None else np.zeros(shape, np.uint16)
     if not len(kept):
-        return Segmentation(roles, confidence, instances)
+        return Segmentation(roles, confidence, instances, named, names)
     masks = _sigmoid(np.asarray(mask_logits[kept], np.float32))
     weighted = masks * scores[kept, None, None]
     owner = weighted.argmax(axis=0)
@@ -89,7 +91,9 @@ def _panoptic_masks(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segment
         instances[mine] = k + 1
         confidence[mine] = weighted[k][mine]
         roles[mine] = role_of[k]
-    return Segmentation(roles, confidence, instances)
+        if named is not None and class_of is not None:
+            named[mine] = class_of[k]
+    return Segmentation(roles, confidence, instances, named, names)
 
 
 def _panoptic_segments(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segmentation:
@@ -122,7 +126,9 @@ def _panoptic_segments(tensors: Mapping[str, _Tensor], sidecar: Sidecar) -> Segm
     roles = np.append(sidecar.roles.roles(classes), np.uint8(SurfaceRole.undecided))
     void = found == len(numbers)
     instances = np.where(void, 0, segments).astype(np.uint16)
-    return Segmentation(roles[found], np.append(scores, np.float32(0))[found], instances)
+    class_of, names = sidecar.named(classes)
+    named = None if class_of is None else np.append(class_of, np.uint16(0))[found]
+    return Segmentation(roles[found], np.append(scores, np.float32(0))[found], instances, named, names)
 
 
 _KINDS = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -9,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.errors import InputError
+from vsgraphs.segment.classes import check_names
 from vsgraphs.segment.roles import SurfaceRole
 
 Rgb = npt.NDArray[np.uint8]
@@ -24,11 +26,16 @@ class Segmentation:
     roles: uint8, values of `SurfaceRole`.
     confidence: float32, 0 to 1, the weight of each vote; None: 1 everywhere.
     instances: uint16, 0 where there is none, else one number per object; None: the segmenter knows none.
+    classes: uint16, the segmenter's own classes: 0 where there is none, else k for the k-th of `class_names`;
+        None: it knows none. They say nothing of roles.
+    class_names: one name per class, each of 1 to 128 bytes (UTF-8) and there once.
     """
 
     roles: npt.NDArray[np.uint8]
     confidence: npt.NDArray[np.float32] | None = None
     instances: npt.NDArray[np.uint16] | None = None
+    classes: npt.NDArray[np.uint16] | None = None
+    class_names: Sequence[str] | None = None
 
 
 class Segmenter(Protocol):
@@ -74,7 +81,26 @@ def checked(result: Any, name: str) -> Segmentation:
             )
     if instances is not None:
         instances = _array(instances, np.uint16, "instances", name, roles.shape)
-    return Segmentation(roles, confidence, instances)
+    classes, names = _checked_classes(result, name, roles.shape)
+    return Segmentation(roles, confidence, instances, classes, names)
+
+
+def _checked_classes(
+    result: Segmentation, name: str, shape: tuple[int, ...]
+) -> tuple[npt.NDArray[np.uint16] | None, tuple[str, ...] | None]:
+    if (result.classes is None) != (result.class_names is None):
+        raise InputError(f"segmenter {name}: classes and class_names go together, class k is the k-th name")
+    if result.classes is None:
+        return None, None
+    classes = _array(result.classes, np.uint16, "classes", name, shape)
+    names = check_names(result.class_names, f"segmenter {name}: class_names")
+    if not names:
+        raise InputError(f"segmenter {name}: class_names is empty; leave it and classes out")
+    if classes.max() > len(names):
+        raise InputError(
+            f"segmenter {name}: classes holds {classes.max()}, beyond the {len(names)} of class_names"
+        )
+    return classes, names
 
 
 def _array(

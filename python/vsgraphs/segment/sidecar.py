@@ -6,8 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from vsgraphs.errors import InputError
 from vsgraphs.reading import shortened, shown
+from vsgraphs.segment.classes import ClassTable, check_names
 from vsgraphs.segment.fields import Fields, read_object
 from vsgraphs.segment.roles import RoleTable, SurfaceRole, role_named
 
@@ -64,6 +68,15 @@ class Sidecar:
     input: InputFormat
     output: OutputFormat
     roles: RoleTable
+    classes: ClassTable | None  # None: the sidecar does not name them
+
+    def named(
+        self, values: npt.NDArray[Any]
+    ) -> tuple[npt.NDArray[np.uint16], tuple[str, ...]] | tuple[None, None]:
+        """Numbers of classes and their names, as a Segmentation has them; `roles` knows all the values."""
+        if self.classes is None or not self.classes.names:
+            return None, None
+        return self.classes.classes(values), self.classes.names
 
 
 def read_sidecar(path: Path) -> Sidecar:
@@ -71,11 +84,13 @@ def read_sidecar(path: Path) -> Sidecar:
     root = Fields(
         read_object(path, "sidecar"), str(path), ("input", "output", "classes", "roles", "model_card")
     )
+    names = _class_names(root)
     return Sidecar(
         path,
         _input(root.required("input"), f"{path}: input"),
         _output(root.required("output"), f"{path}: output"),
-        _roles(root),
+        _roles(root, names),
+        None if names is None else ClassTable(dict(enumerate(names)), f"{path}: classes"),
     )
 
 
@@ -124,16 +139,21 @@ def _output(data: Any, where: str) -> OutputFormat:
     )
 
 
-def _roles(root: Fields) -> RoleTable:
+def _class_names(root: Fields) -> list[str] | None:
+    if not root.has("classes"):
+        return None
+    classes = root.required("classes")
+    if not isinstance(classes, list) or not all(isinstance(name, str) for name in classes) or not classes:
+        raise InputError(f"{root.where}: 'classes' must be a list of names, class 0 first")
+    if len(set(classes)) < len(classes):
+        twice = next(name for name in classes if classes.count(name) > 1)
+        raise InputError(f"{root.where}: 'classes' lists {shown(twice)} twice")
+    check_names(classes, f"{root.where}: classes")
+    return classes
+
+
+def _roles(root: Fields, classes: list[str] | None) -> RoleTable:
     """Roles by class name where `classes` lists them, or by number."""
-    classes = None
-    if root.has("classes"):
-        classes = root.required("classes")
-        if not isinstance(classes, list) or not all(isinstance(name, str) for name in classes) or not classes:
-            raise InputError(f"{root.where}: 'classes' must be a list of names, class 0 first")
-        if len(set(classes)) < len(classes):
-            twice = next(name for name in classes if classes.count(name) > 1)
-            raise InputError(f"{root.where}: 'classes' lists {shown(twice)} twice")
     where = f"{root.where}: roles"
     names = classes or []
     given = root.required("roles")
