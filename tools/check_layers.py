@@ -181,7 +181,7 @@ def _include_problems(
 
 
 def check_cpp(root: Path) -> list[str]:
-    """Checks core/, what stands beside it and bindings/ below `root`; a line `path:line: problem` per finding."""
+    """Checks core/, what stands beside it and bindings/; returns a line `path:line: problem` per finding."""
     top = root / "CMakeLists.txt"
     beside = sorted(read_layers(top.read_text())) if top.exists() else []
     layers = read_layers(
