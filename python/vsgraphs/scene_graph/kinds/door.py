@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -107,8 +107,8 @@ class DoorKind(Kind[DoorNode]):
             "kind": node.kind,
         }
 
-    def figures(self, nodes: Collection[DoorNode]) -> dict[str, Any]:
-        return {"doors": len(nodes)}
+    def figures(self, graph: SceneGraph) -> dict[str, Any]:
+        return {"doors": len(graph.doors)}
 
     def found(self, figures: Mapping[str, Any]) -> str:
         return count(figures.get("doors", 0), "door")

@@ -1,12 +1,12 @@
 """Elements of the scene: what a room has or holds, as a box on planes, found by the map.
 
-All kinds of elements are alike but for what they are called and how they look: a kind is an `ElementKind` in
-a file of its own here, and a line in `table.py`.
+All kinds of elements are alike but for what they are called and how they look: a kind is a subclass of
+`ElementKind` in a file of its own here, and a line in `table.py`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ from vsgraphs.reading import shown
 from vsgraphs.scene_graph.edges import Edge, Relation, node_key
 from vsgraphs.scene_graph.kinds import rows
 from vsgraphs.scene_graph.kinds.box import Box
-from vsgraphs.scene_graph.kinds.kind import Kind, Rgb, SparkPlace, count
+from vsgraphs.scene_graph.kinds.kind import Kind, count
 from vsgraphs.scene_graph.kinds.mover import Mover, Row, finite, id_list
 from vsgraphs.trajectory import Array
 
@@ -29,7 +29,7 @@ SHOWS = Relation("shows", "plane")  # plane -> the element that is seen on it
 
 @dataclass(eq=False)
 class ElementNode:
-    """A thing in a box. kind: as its `ElementKind` is called. center: (3,) the box's middle.
+    """A thing in a box. kind: its kind's name. center: (3,) the box's middle.
 
     along: (3,) horizontal unit vector in which the box is wide. size_m: (3,) width, depth, height.
     planes: on which it is seen. rooms: in which it is; one between two rooms is in both.
@@ -45,43 +45,29 @@ class ElementNode:
 
 
 class ElementKind(Kind[ElementNode]):
-    """Made from what differs; see `Kind` for name, section, colour and truth. One is "a NAME" to people.
-
-    symbol: the letter before its ids in Spark-DSG, of no other kind. label: what it is called there.
-    description: of a row, for the schema. Its raw rows are those of `elements` whose `kind` is the name.
+    """A subclass says name, section, colour, spark and description (of a row, for the schema); of what `Kind`
+    has beside these, in_plan, truth and within_m. Its raw rows are those of `elements` whose `kind` is the
+    name.
     """
 
     node = ElementNode
     boxed = True
+    description: str
 
-    def __init__(
-        self,
-        name: str,
-        section: str,
-        *,
-        colour: Rgb,
-        symbol: str,
-        description: str,
-        label: str = "",
-        truth: str | None = None,
-        within_m: float = 0.5,
-    ) -> None:
-        self.name, self.section, self.colour = name, section, colour
-        self.truth, self.within_m = truth, within_m
-        self.spark = SparkPlace("objects", symbol, (label or name,))
-        self._lies_in = Relation("lies_in", name)  # element -> room; one kind of edge for all of them
+    def __init__(self) -> None:
+        self._lies_in = Relation("lies_in", self.name)  # element -> room; one kind of edge for all of them
         self.relations = (SHOWS, self._lies_in)
         self.row = rows.row_of(
             {
                 "id": rows.ID,
-                "kind": {"const": name},
+                "kind": {"const": self.name},
                 "center": rows.VECTOR,
                 "along": rows.VECTOR,
                 "size_m": rows.VECTOR,
                 "planes": rows.IDS,
                 "rooms": rows.IDS,
             },
-            description=description,
+            description=self.description,
         )
 
     def rows(self, raw: Row) -> list[Row] | None:
@@ -124,8 +110,10 @@ class ElementKind(Kind[ElementNode]):
     def details(self, node: ElementNode) -> dict[str, Any]:
         return {"size_m": node.size_m, "along": node.along, "planes": node.planes, "rooms": node.rooms}
 
-    def figures(self, nodes: Collection[ElementNode]) -> dict[str, Any]:
-        return {self.section: len(nodes)}
+    def figures(self, graph: SceneGraph) -> dict[str, Any]:
+        """Nothing where nobody looked."""
+        sought = self.section in graph.estimated
+        return {self.section: len(graph.section(self.section))} if sought else {}
 
     def found(self, figures: Mapping[str, Any]) -> str:
         return count(figures.get(self.section, 0), self.name, self.section)

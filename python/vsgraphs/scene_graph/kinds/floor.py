@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vsgraphs.scene_graph.kinds import rows
 from vsgraphs.scene_graph.kinds.kind import Kind, SparkPlace, count
 from vsgraphs.scene_graph.kinds.mover import Mover, Row, id_list, id_or_none
 from vsgraphs.trajectory import Array
+
+if TYPE_CHECKING:
+    from vsgraphs.scene_graph.graph import SceneGraph
 
 
 @dataclass(eq=False)
@@ -47,8 +50,8 @@ class FloorKind(Kind[FloorNode]):
     def details(self, node: FloorNode) -> dict[str, Any]:
         return {"ground": node.ground}
 
-    def figures(self, nodes: Collection[FloorNode]) -> dict[str, Any]:
-        return {"floors": len(nodes)}
+    def figures(self, graph: SceneGraph) -> dict[str, Any]:
+        return {"floors": len(graph.floors)}
 
     def found(self, figures: Mapping[str, Any]) -> str:
         return count(figures.get("floors", 0), "floor") or count(figures.get("grounds", 0), "ground plane")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -39,9 +39,9 @@ class Kind(ABC, Generic[NodeT]):
     name: of one, as in "plane:3". section: of all, as in scene_graph.json. node: the dataclass; its fields
     are the row in the file. row: the schema of such a row; definitions: what it refers to. required: whether
     a file without the section is broken. derived: properties that a row tells beside the fields. relations:
-    the kinds of edges it brings. boxed: whether plan and viewer draw it as its `box`, with its title; others
-    have drawings of their own there. truth: the list of scene_gt.json it is scored
-    against, by its middle, which may be within_m off; None: it is not, or in a way of its own.
+    the kinds of edges it brings. boxed: whether the viewer draws it as its `box`, with its title, and, if
+    in_plan, the plan too; others have drawings of their own there. truth: the list of scene_gt.json it is
+    scored against, by its middle, which may be within_m off; None: it is not, or in a way of its own.
     """
 
     name: str
@@ -55,6 +55,7 @@ class Kind(ABC, Generic[NodeT]):
     derived: tuple[str, ...] = ()
     relations: tuple[Relation, ...] = ()
     boxed: bool = False
+    in_plan: bool = True
     truth: str | None = None
     within_m: float = 0.5
 
@@ -131,8 +132,8 @@ class Kind(ABC, Generic[NodeT]):
 
     # ---- for people
 
-    def figures(self, nodes: Collection[NodeT]) -> dict[str, Any]:
-        """The figures of all of them in run.json's section `scene`."""
+    def figures(self, graph: SceneGraph) -> dict[str, Any]:
+        """What run.json's section `scene` tells of all of them."""
         return {}
 
     def found(self, figures: Mapping[str, Any]) -> str:

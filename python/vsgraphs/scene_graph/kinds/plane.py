@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -163,10 +163,11 @@ class PlaneKind(Kind[PlaneNode]):
             "observed_by": node.observed_by,
         }
 
-    def figures(self, nodes: Collection[PlaneNode]) -> dict[str, Any]:
-        roles = Counter(plane.role for plane in nodes)
+    def figures(self, graph: SceneGraph) -> dict[str, Any]:
+        roles = Counter(plane.role for plane in graph.planes.values())
         walls, grounds = roles["wall"], roles["ground"]
-        return {"planes": len(nodes), "undecided": roles["undecided"], "walls": walls, "grounds": grounds}
+        counts = {"planes": len(graph.planes), "undecided": roles["undecided"]}
+        return {**counts, "walls": walls, "grounds": grounds}
 
     def found(self, figures: Mapping[str, Any]) -> str:
         return count(figures.get("walls", 0), "wall")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -139,9 +139,10 @@ class RoomKind(Kind[RoomNode]):
             "partial": node.partial,
         }
 
-    def figures(self, nodes: Collection[RoomNode]) -> dict[str, Any]:
-        partial, area_m2 = sum(room.partial for room in nodes), sum(room.area_m2 for room in nodes)
-        return {"rooms": len(nodes), "partial_rooms": partial, "area_m2": area_m2}
+    def figures(self, graph: SceneGraph) -> dict[str, Any]:
+        rooms = graph.rooms.values()
+        partial, area_m2 = sum(room.partial for room in rooms), sum(room.area_m2 for room in rooms)
+        return {"rooms": len(rooms), "partial_rooms": partial, "area_m2": area_m2}
 
     def found(self, figures: Mapping[str, Any]) -> str:
         rooms = count(figures.get("rooms", 0), "room")
