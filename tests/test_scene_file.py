@@ -3,6 +3,7 @@ from __future__ import annotations
 import copy
 import json
 import re
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +14,15 @@ from scene_worlds import building, camera_poses, perfect_map
 
 from vsgraphs.errors import InputError
 from vsgraphs.scene_graph import (
-    FACTORS,
     ROLES,
     SceneGraph,
     format_scene_graph,
     load_scene_graph,
+    relations,
     scene_graph_schema,
 )
 from vsgraphs.scene_graph.schema import first_violation
+from vsgraphs.scene_graph.schema_document import schema_text
 from vsgraphs.trajectory import Array
 
 Raw = dict[str, Any]
@@ -62,7 +64,12 @@ def test_the_file_keeps_to_its_schema(snapshot: tuple[Raw, Keyframes], graph: Sc
     for each in (graph, bare):
         jsonschema.validate(json.loads(format_scene_graph(each)), schema)
     assert tuple(schema["$defs"]["plane"]["properties"]["role"]["enum"]) == ROLES
-    assert set(schema["$defs"]["edge"]["properties"]["kind"]["enum"]) == set(FACTORS)
+    assert set(schema["$defs"]["edge"]["properties"]["kind"]["enum"]) == set(relations())
+
+
+def test_the_shipped_schema_is_up_to_date() -> None:
+    shipped = resources.files("vsgraphs.scene_graph").joinpath("scene_graph.schema.json").read_text("utf-8")
+    assert shipped == schema_text(), "after a change of a kind of node: python tools/write_schema.py"
 
 
 def test_our_check_of_the_schema_is_jsonschema_s(graph: SceneGraph) -> None:

@@ -11,14 +11,14 @@ from scene_worlds import building, camera_poses, perfect_map
 
 from vsgraphs.errors import InputError
 from vsgraphs.scene_graph import (
-    FACTORS,
     SceneGraph,
     extent_of,
     format_scene_graph,
     parse_scene_graph,
+    relations,
 )
-from vsgraphs.scene_graph.edges import NODE_KINDS
 from vsgraphs.scene_graph.extent import convex_hull
+from vsgraphs.scene_graph.kinds import KINDS
 from vsgraphs.trajectory import Array
 
 Raw = dict[str, Any]
@@ -199,7 +199,7 @@ def test_convex_hull() -> None:
 
 
 def test_edges_and_their_factors(graph: SceneGraph) -> None:
-    kinds = {kind: [e for e in graph.edges if e.kind == kind] for kind in FACTORS}
+    kinds = {kind: [e for e in graph.edges if e.kind == kind] for kind in relations()}
     observed = sum(len(plane.observed_by) for plane in graph.planes.values())
     assert len(kinds["observes_plane"]) == observed
     assert len(kinds["bounds"]) == 16
@@ -214,7 +214,7 @@ def test_edges_and_their_factors(graph: SceneGraph) -> None:
     assert len(kinds["belongs_to"]) == len(kinds["ground_of"]) == 4
     assert [(e.source, e.target) for e in kinds["names"]] == [("marker:17", "room:0")]
     assert len(kinds["observes_marker"]) == 2
-    assert all(edge.factor == FACTORS[edge.kind] for edge in graph.edges)
+    assert all(edge.factor == relations()[edge.kind].factor for edge in graph.edges)
 
 
 def test_wall_pairs_and_faces(snapshot: tuple[Raw, Keyframes]) -> None:
@@ -302,7 +302,7 @@ def test_paths_lead_through_doors(graph: SceneGraph) -> None:
 def test_networkx(graph: SceneGraph, monkeypatch: pytest.MonkeyPatch) -> None:
     networkx = pytest.importorskip("networkx")
     out = graph.to_networkx()
-    count = sum(len(getattr(graph, f"{kind}s")) for kind in NODE_KINDS)
+    count = sum(len(graph.section(kind.section)) for kind in KINDS)
     assert out.number_of_nodes() == count
     assert out.nodes["plane:16"]["role"] == "ground"
     assert out.nodes["room:2"]["subtype"] == "corridor"

@@ -47,6 +47,9 @@ def _print(scores: SceneScores, result: Evaluation) -> None:
     table.add_row(*_row("rooms' walls", scores.walls))  # one long wall of the map is that of several rooms
     table.add_row(*_row("ground", scores.ground))
     table.add_row(*_row("floors", scores.floors))
+    for name, score in scores.structure.items():
+        if name not in ("rooms", "doors", "floors"):
+            table.add_row(*_row(name, score))
     tracked = "" if result.completion is None else f"{100 * result.completion:.1f} %"
     error = f"ATE {_cm(result.ate.rmse)} over {result.path_m:.1f} m"
     table.add_row("camera", tracked, "", error)

@@ -132,9 +132,8 @@ def _print(scores: SceneScores, accuracy: Evaluation) -> None:
     _row(table, "components", scores.building_components)
     _row(table, "  walls", scores.walls)
     _row(table, "  ground", scores.ground)
-    _row(table, "rooms", scores.rooms)
-    _row(table, "floors", scores.floors)
-    _row(table, "doors", scores.doors)
+    for name, score in scores.structure.items():
+        _row(table, name, score)
     console.print(table)
     found = scores.map
     if found is not None:

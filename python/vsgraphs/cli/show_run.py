@@ -9,8 +9,9 @@ from typing import Any
 
 from vsgraphs.errors import InputError
 from vsgraphs.reading import read_json, shortened
-from vsgraphs.run.summary import RESULT_FILES, count, what_was_found
+from vsgraphs.run.summary import RESULT_FILES, what_was_found
 from vsgraphs.scene_graph import DoorNode, RoomNode, SceneGraph, load_scene_graph
+from vsgraphs.scene_graph.kinds import count
 
 _WARNINGS = 5  # so many are printed, the rest counted
 

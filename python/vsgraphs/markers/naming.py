@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vsgraphs.scene_graph import inside_polygon
-from vsgraphs.scene_graph.edges import ordered, sights_and_names_of_markers
+from vsgraphs.scene_graph import edges_at, inside_polygon, ordered
 
 if TYPE_CHECKING:
     from vsgraphs.markers.registry import MarkerRegistry
@@ -52,7 +51,7 @@ def name_by_markers(graph: SceneGraph, registry: MarkerRegistry) -> list[str]:
                 if kind == "room":
                     section[place].kind = registry.markers[speakers[0].id].kind
     graph.edges = ordered(
-        [edge for edge in graph.edges if edge.kind != "names"] + list(sights_and_names_of_markers(graph))
+        [edge for edge in graph.edges if edge.kind != "names"] + list(edges_at(graph, "markers"))
     )
     return warnings
 

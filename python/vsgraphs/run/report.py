@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from vsgraphs.compiled import core
 from vsgraphs.run import measures
 from vsgraphs.run.naming import marker_figures
 from vsgraphs.run.summary import what_is_missing
+from vsgraphs.scene_graph import KINDS
 from vsgraphs.version import commit, versions
 
 if TYPE_CHECKING:
@@ -90,16 +90,7 @@ def _scene_counts(graph: SceneGraph | None) -> dict[str, Any]:
     """How many of each kind of surface and structure, and in which frame all files are."""
     if graph is None:
         return {"frame": "first_camera"}
-    roles = Counter(plane.role for plane in graph.planes.values())
-    return {
-        "frame": "levelled" if graph.frame.levelled else "first_camera",
-        "planes": len(graph.planes),
-        "undecided": roles["undecided"],
-        "walls": roles["wall"],
-        "grounds": roles["ground"],
-        "rooms": len(graph.rooms),
-        "partial_rooms": sum(room.partial for room in graph.rooms.values()),
-        "area_m2": sum(room.area_m2 for room in graph.rooms.values()),
-        "floors": len(graph.floors),
-        "doors": len(graph.doors),
-    }
+    figures = {"frame": "levelled" if graph.frame.levelled else "first_camera"}
+    for kind in KINDS:
+        figures |= kind.figures(graph)
+    return figures

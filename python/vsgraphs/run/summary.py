@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vsgraphs.scene_graph.kinds import KINDS, count
+
 if TYPE_CHECKING:
     from vsgraphs.run.session import Tally
 
@@ -48,24 +50,17 @@ def summarise(report: dict[str, Any], out: Path) -> str:
     return "\n".join([*lines, f"results in {out}: {' '.join(files)}"])
 
 
+_TOLD_FIRST = {name: place for place, name in enumerate(("room", "door", "plane", "floor"))}
+
+
 def what_was_found(scene: dict[str, Any]) -> str:
     """As "4 rooms, 5 doors, 16 walls, 1 floor, 98 m2" (the rooms' areas); empty where nothing was found.
 
     scene: run.json's section of that name.
     """
-    storeys = count(scene.get("floors", 0), "floor") or count(scene.get("grounds", 0), "ground plane")
-    rooms = count(scene.get("rooms", 0), "room")
-    if rooms and scene.get("partial_rooms"):
-        some = "" if scene["partial_rooms"] == scene["rooms"] else f"{scene['partial_rooms']} "
-        rooms += f" ({some}partly seen)"
-    area = f"{scene['area_m2']:.0f} m2" if rooms and "area_m2" in scene else ""
-    parts = [rooms, count(scene.get("doors", 0), "door"), count(scene.get("walls", 0), "wall"), storeys, area]
-    return ", ".join(part for part in parts if part)
-
-
-def count(number: int, what: str) -> str:
-    """As "1 room", "2 rooms"; empty for none."""
-    return f"{number} {what}{'' if number == 1 else 's'}" if number else ""
+    order = sorted(KINDS, key=lambda kind: _TOLD_FIRST.get(kind.name, len(_TOLD_FIRST)))
+    area = f"{scene['area_m2']:.0f} m2" if scene.get("rooms") and "area_m2" in scene else ""
+    return ", ".join(part for part in (*(kind.found(scene) for kind in order), area) if part)
 
 
 def not_sought(report: dict[str, Any]) -> list[str]:

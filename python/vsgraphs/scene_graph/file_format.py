@@ -1,7 +1,7 @@
 """scene_graph.json: the graph as text and back.
 
 Nodes carry the names of their dataclasses' fields. A section that nobody looked for is left out; an empty
-one means that none was found. The schema lies beside this file (scene_graph.schema.json).
+one means that none was found. The schema: schema_document.py.
 """
 
 from __future__ import annotations
@@ -15,27 +15,17 @@ import numpy as np
 
 from vsgraphs.errors import InputError
 from vsgraphs.reading import LARGE, read_json, shown
-from vsgraphs.scene_graph.consistency import check_edges, check_extents, check_references
-from vsgraphs.scene_graph.edges import Edge, ordered
+from vsgraphs.scene_graph.all_edges import ordered
+from vsgraphs.scene_graph.consistency import check_edges, check_nodes, check_references
+from vsgraphs.scene_graph.edges import Edge
 from vsgraphs.scene_graph.extent import PlaneExtent
+from vsgraphs.scene_graph.frame import Frame
 from vsgraphs.scene_graph.graph import SceneGraph
-from vsgraphs.scene_graph.nodes import (
-    SECTIONS,
-    DoorNode,
-    FloorNode,
-    Frame,
-    KeyframeNode,
-    MarkerNode,
-    PlaceNode,
-    PlaneNode,
-    RoomNode,
-)
+from vsgraphs.scene_graph.kinds import KINDS, Kind
 from vsgraphs.scene_graph.schema import first_violation
 
 FORMAT = "vsgraphs scene graph"
 VERSION = 1
-_NODES = (KeyframeNode, PlaneNode, RoomNode, FloorNode, DoorNode, MarkerNode, PlaceNode)
-_CLASSES: dict[str, type] = dict(zip(SECTIONS, _NODES, strict=True))
 _POINT_LISTS = ("polygon", "runs")
 
 
@@ -47,10 +37,10 @@ def format_scene_graph(graph: SceneGraph) -> str:
     frame = {**_encode(graph.frame), "zero_height": graph.frame.zero_height}
     head = {"format": FORMAT, "version": VERSION, "units": "metres, seconds", "frame": frame}
     parts = [f"{json.dumps(key)}: {_line(value)}" for key, value in head.items()]
-    for section in SECTIONS:
-        if section in graph.estimated:
-            rows = [_line(_encode(node)) for _, node in sorted(getattr(graph, section).items())]
-            parts.append(f"{json.dumps(section)}: {_block(rows)}")
+    for kind in KINDS:
+        if kind.section in graph.estimated:
+            rows = [_line(_row(kind, node)) for _, node in sorted(graph.section(kind.section).items())]
+            parts.append(f"{json.dumps(kind.section)}: {_block(rows)}")
     parts.append(f'"edges": {_block([_line(_encode(edge)) for edge in ordered(graph.edges)])}')
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
@@ -77,14 +67,15 @@ def parse_scene_graph(document: Any, source: str) -> SceneGraph:
     if violation is not None:
         raise InputError(f"{source}: {violation}")
     graph = SceneGraph(frame=_decode(Frame, document["frame"]))
-    graph.estimated = frozenset(name for name in SECTIONS if name in document)
-    for section in graph.estimated:
-        nodes = [_decode(_CLASSES[section], row) for row in document[section]]
-        setattr(graph, section, {node.id: node for node in sorted(nodes, key=lambda node: int(node.id))})
+    graph.estimated = frozenset(kind.section for kind in KINDS if kind.section in document)
+    for kind in KINDS:
+        nodes = [_decode(kind.node, row) for row in document.get(kind.section, ())]
+        by_id = {node.id: node for node in sorted(nodes, key=lambda node: int(node.id))}
+        graph.set_section(kind.section, by_id)
     graph.edges = ordered(_decode(Edge, row) for row in document["edges"])
     check_references(graph, source)
     check_edges(graph, source)
-    check_extents(graph, source)
+    check_nodes(graph, source)
     return graph
 
 
@@ -94,6 +85,10 @@ def _block(rows: list[str]) -> str:
 
 def _line(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False, separators=(", ", ": "), allow_nan=False)
+
+
+def _row(kind: Kind[Any], node: Any) -> dict[str, Any]:
+    return {**_encode(node), **{name: _encode(getattr(node, name)) for name in kind.derived}}
 
 
 def _encode(value: Any) -> Any:
@@ -107,10 +102,7 @@ def _encode(value: Any) -> Any:
         return {key: _encode(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_encode(item) for item in value]
-    out = {field.name: _encode(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, PlaneNode):
-        out["area_m2"] = _encode(value.area_m2)
-    return out
+    return {field.name: _encode(getattr(value, field.name)) for field in fields(value)}
 
 
 def _decode(kind: type, row: dict[str, Any]) -> Any:

@@ -12,19 +12,20 @@ from vsgraphs.errors import InputError
 from vsgraphs.reading import shown
 from vsgraphs.scene_graph import levelling, queries
 from vsgraphs.scene_graph.edges import Edge
+from vsgraphs.scene_graph.frame import Frame
 from vsgraphs.scene_graph.from_map import fill_from_map
-from vsgraphs.scene_graph.networks import to_networkx
-from vsgraphs.scene_graph.nodes import (
-    SECTIONS,
+from vsgraphs.scene_graph.kinds import (
     DoorNode,
+    ElementNode,
     FloorNode,
-    Frame,
     KeyframeNode,
     MarkerNode,
     PlaceNode,
     PlaneNode,
     RoomNode,
+    sections,
 )
+from vsgraphs.scene_graph.networks import to_networkx
 
 if TYPE_CHECKING:
     from vsgraphs.trajectory import Array
@@ -34,8 +35,9 @@ if TYPE_CHECKING:
 class SceneGraph:
     """Nodes by id, in ascending order of id, and edges. Coordinates are in `frame`, metres.
 
-    estimated: which of SECTIONS whoever made the graph looked for at all. An empty section in it means that
-    none was found; one that is not in it, that nobody looked.
+    elements: by section, as it is called in the file, what has no attribute of its own here. estimated: the
+    sections that whoever made the graph looked for at all. An empty section in it means that none was found;
+    one that is not in it, that nobody looked.
     """
 
     frame: Frame = field(default_factory=Frame)
@@ -46,8 +48,9 @@ class SceneGraph:
     doors: dict[int, DoorNode] = field(default_factory=dict)
     markers: dict[int, MarkerNode] = field(default_factory=dict)
     places: dict[int, PlaceNode] = field(default_factory=dict)
+    elements: dict[str, dict[int, ElementNode]] = field(default_factory=dict)
     edges: list[Edge] = field(default_factory=list)
-    estimated: frozenset[str] = frozenset(SECTIONS)
+    estimated: frozenset[str] = field(default_factory=lambda: frozenset(sections()))
 
     @classmethod
     def from_map(cls, raw: Mapping[str, Any], keyframes: tuple[Any, Any, Any]) -> SceneGraph:
@@ -60,6 +63,18 @@ class SceneGraph:
         graph = cls()
         fill_from_map(graph, raw, keyframes)
         return graph
+
+    def section(self, name: str) -> dict[int, Any]:
+        """The nodes of a section of the file, by id: "rooms" are `rooms`; empty for one that nobody knows."""
+        nodes: dict[int, Any] = getattr(self, name) if name in _OWN else self.elements.get(name, {})
+        return nodes
+
+    def set_section(self, name: str, nodes: dict[int, Any]) -> None:
+        """Replaces the nodes of a section."""
+        if name in _OWN:
+            setattr(self, name, nodes)
+        else:
+            self.elements[name] = nodes
 
     def poses_from_map(self, poses: Array) -> Array:
         """(N, 4, 4) poses in the map's frame (`slam.trajectory()`, `snapshot.keyframes()`) -> the graph's."""
@@ -96,3 +111,6 @@ class SceneGraph:
     def to_networkx(self) -> Any:
         """A networkx.MultiDiGraph; see `networks`. Raises InputError where networkx is not installed."""
         return to_networkx(self)
+
+
+_OWN = ("keyframes", "planes", "rooms", "floors", "doors", "markers", "places")  # attributes of a graph

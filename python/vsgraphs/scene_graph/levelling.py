@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vsgraphs.scene_graph.nodes import Frame
+from vsgraphs.scene_graph.frame import Frame
 from vsgraphs.trajectory import Array
 
 # A ground seen this near to the plumb line through the first camera is the one the camera was carried over.

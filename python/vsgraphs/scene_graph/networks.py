@@ -6,7 +6,8 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from vsgraphs.errors import InputError
-from vsgraphs.scene_graph.edges import SYMMETRIC, node_key
+from vsgraphs.scene_graph.edges import node_key
+from vsgraphs.scene_graph.kinds import KINDS, relations
 
 if TYPE_CHECKING:
     from vsgraphs.scene_graph.graph import SceneGraph
@@ -26,20 +27,22 @@ def to_networkx(graph: SceneGraph) -> Any:
             "networkx is not installed; install it with: pip install 'vsgraphs[graph]'"
         ) from None
     out = networkx.MultiDiGraph(levelled=graph.frame.levelled, world_from_map=graph.frame.world_from_map)
-    for kind in ("keyframe", "plane", "room", "floor", "door", "marker", "place"):
-        for node in getattr(graph, f"{kind}s").values():
+    for kind in KINDS:
+        for node in graph.section(kind.section).values():
             values = {f.name: getattr(node, f.name) for f in fields(node) if f.name != "kind"}
-            if kind in ("room", "door"):
+            if hasattr(node, "kind"):
                 values["subtype"] = node.kind  # "corridor", "passage"
-            out.add_node(node_key(kind, node.id), kind=kind, **values)
+            out.add_node(node_key(kind.name, node.id), kind=kind.name, **values)
+    symmetric = {name for name, relation in relations().items() if relation.symmetric}
     for edge in graph.edges:
         key = edge.kind if edge.via is None else f"{edge.kind}/{edge.via}"
         values = {"kind": edge.kind, "factor": edge.factor, "via": edge.via}
         out.add_edge(edge.source, edge.target, key, **values)
-        if edge.kind in SYMMETRIC:
+        if edge.kind in symmetric:
             out.add_edge(edge.target, edge.source, key, **values)
-    for place in graph.places.values():
-        for other in place.neighbours:
-            ends = node_key("place", place.id), node_key("place", other)
-            out.add_edge(*ends, "free", kind="free", factor=None, via=None)
+    for kind in KINDS:
+        for node in graph.section(kind.section).values():
+            for other in kind.neighbours(node):
+                ends = node_key(kind.name, node.id), node_key(kind.name, other)
+                out.add_edge(*ends, "free", kind="free", factor=None, via=None)
     return out

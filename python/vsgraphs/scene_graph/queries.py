@@ -12,7 +12,7 @@ from vsgraphs.errors import InputError
 
 if TYPE_CHECKING:
     from vsgraphs.scene_graph.graph import SceneGraph
-    from vsgraphs.scene_graph.nodes import RoomNode
+    from vsgraphs.scene_graph.kinds import RoomNode
     from vsgraphs.trajectory import Array
 
 _UNKNOWN_HEIGHT_M = 3.0  # a room whose ceiling nobody saw

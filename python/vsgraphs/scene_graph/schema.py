@@ -1,4 +1,4 @@
-"""Checks a parsed file against the shipped JSON Schema (draft 2020-12), of which we use a small part.
+"""Checks a parsed file against the JSON Schema (draft 2020-12), of which we use a small part.
 
 Understood: type, const, enum, required, properties, additionalProperties (as a schema), items, minItems,
 maxItems, minimum, pattern, $ref into $defs. Stricter in one thing: 1.0 is no integer. Tests check our
@@ -7,14 +7,12 @@ answers against the package jsonschema.
 
 from __future__ import annotations
 
-import functools
-import json
 import math
 import re
-from importlib import resources
 from typing import Any
 
 from vsgraphs.reading import shown
+from vsgraphs.scene_graph.schema_document import scene_graph_schema
 
 _LARGEST = 1e12  # of metres, seconds, ids: its square is still a number
 _TYPES: dict[str, type | tuple[type, ...]] = {
@@ -26,14 +24,6 @@ _TYPES: dict[str, type | tuple[type, ...]] = {
     "number": (int, float),
     "null": type(None),
 }
-
-
-@functools.cache
-def scene_graph_schema() -> dict[str, Any]:
-    """The schema of scene_graph.json."""
-    text = resources.files("vsgraphs.scene_graph").joinpath("scene_graph.schema.json").read_text("utf-8")
-    schema: dict[str, Any] = json.loads(text)
-    return schema
 
 
 def first_violation(document: Any) -> str | None:

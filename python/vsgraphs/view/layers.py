@@ -5,25 +5,29 @@ After the pictures of Hughes et al., "Hydra" (RSS 2022), and of vS-Graphs.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vsgraphs.scene_graph import CLASS_COLOURS, SceneGraph, node_key, transform_points
+from vsgraphs.scene_graph import CLASS_COLOURS, KINDS, Kind, SceneGraph, node_key, transform_points
 from vsgraphs.trajectory import Array
 from vsgraphs.view.surfaces import room_colour
 
-KEYFRAME_COLOUR = (150, 150, 160)
-FLOOR_COLOUR = (240, 240, 240)
+Rgb = tuple[int, int, int]
+FLOOR_COLOUR: Rgb = (240, 240, 240)
 MAX_LINKED_KEYFRAMES = 40  # the links of more would be a carpet
-_SHOWN_EDGES = ("observes_plane", "bounds", "belongs_to", "door")
+_LEVELS = {"keyframe": 1, "plane": 2, "room": 3, "floor": 4}  # what is drawn as a box stands beside planes
+_SHOWN_EDGES = ("observes_plane", "bounds", "belongs_to", "door", "lies_in")
 
 
 @dataclass
 class Layer:
-    """Nodes of one kind. places (N, 3) m, colours (N, 3), names for people, "" for none."""
+    """Nodes of one kind, of a section. places (N, 3) m, colours (N, 3), names for people, "" for none."""
 
+    section: str
     places: Array
     colours: npt.NDArray[np.uint8]
     names: list[str]
@@ -50,27 +54,19 @@ def layered_graph(graph: SceneGraph, up_from_graph: Array) -> LayeredGraph:
     reach = float(np.linalg.norm(high[:2] - low[:2]))
     out = LayeredGraph(size_m=min(max(0.01 * reach, 0.04), 0.3))
     gap = min(max(0.09 * reach, 0.5), 3.0)
-    walls = [plane for plane in graph.planes.values() if plane.role == "wall"]
-    nodes = {
-        "keyframe": [
-            (k.id, k.world_from_camera[:3, 3], KEYFRAME_COLOUR, "") for k in graph.keyframes.values()
-        ],
-        "plane": [(w.id, w.centroid, CLASS_COLOURS["wall"], "") for w in walls],
-        "room": [(r.id, r.centroid, room_colour(r.id), r.name) for r in graph.rooms.values()],
-        "floor": [(f.id, f.centroid, FLOOR_COLOUR, f"floor {f.id}") for f in graph.floors.values()],
-    }
     places: dict[str, Array] = {}
-    colours: dict[str, tuple[int, int, int]] = {}
-    for level, (kind, listed) in enumerate(nodes.items(), 1):
+    colours: dict[str, Rgb] = {}
+    for kind in KINDS:
+        level = _LEVELS.get(kind.name, _LEVELS["plane"] if kind.boxed else 0)
+        if not level:
+            continue
+        listed = _shown(kind, graph)
         at = transform_points(up_from_graph, np.array([place for _, place, *_ in listed]).reshape(-1, 3))
         at[:, 2] = high[2] + gap * level
-        out.layers[kind] = Layer(
-            at,
-            np.array([colour for *_, colour, _ in listed], np.uint8).reshape(-1, 3),
-            [name for *_, name in listed],
-        )
-        places |= {node_key(kind, number): at[i] for i, (number, *_) in enumerate(listed)}
-        colours |= {node_key(kind, number): colour for number, _, colour, _ in listed}
+        shades = np.array([colour for *_, colour, _ in listed], np.uint8).reshape(-1, 3)
+        out.layers[kind.name] = Layer(kind.section, at, shades, [name for *_, name in listed])
+        places |= {node_key(kind.name, number): at[i] for i, (number, *_) in enumerate(listed)}
+        colours |= {node_key(kind.name, number): colour for number, _, colour, _ in listed}
     _add_edges(out, graph, places, colours)
     rooms = list(graph.rooms.values())
     if rooms:
@@ -80,8 +76,25 @@ def layered_graph(graph: SceneGraph, up_from_graph: Array) -> LayeredGraph:
     return out
 
 
+def _shown(kind: Kind[Any], graph: SceneGraph) -> list[tuple[int, Array, Rgb, str]]:
+    """Id, place, colour and name of the kind's nodes; of planes the walls."""
+    nodes = list(graph.section(kind.section).values())
+    if kind.name == "plane":
+        nodes = graph.planes_of("wall")
+    colours: dict[str, Callable[[Any], Rgb]] = {
+        "room": lambda room: room_colour(room.id),
+        "floor": lambda _: FLOOR_COLOUR,
+    }
+    names: dict[str, Callable[[Any], str]] = {
+        "room": lambda room: str(room.name),
+        "floor": lambda floor: f"floor {floor.id}",
+    }
+    colour, name = colours.get(kind.name, kind.rgb), names.get(kind.name, lambda _: "")
+    return [(node.id, kind.place(node), colour(node), name(node)) for node in nodes]
+
+
 def _add_edges(
-    out: LayeredGraph, graph: SceneGraph, places: dict[str, Array], colours: dict[str, tuple[int, int, int]]
+    out: LayeredGraph, graph: SceneGraph, places: dict[str, Array], colours: dict[str, Rgb]
 ) -> None:
     step = 1 + len(graph.keyframes) // MAX_LINKED_KEYFRAMES
     drawn = {node_key("keyframe", k) for k in list(graph.keyframes)[::step]}

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vsgraphs.scene_graph import CLASS_COLOURS, ROLES, SceneGraph, transform_points
+from vsgraphs.scene_graph import CLASS_COLOURS, KINDS, ROLES, SceneGraph, transform_points
 from vsgraphs.trajectory import Array
 from vsgraphs.view.extra import rerun
 from vsgraphs.view.layers import LayeredGraph, layered_graph
 from vsgraphs.view.sinks import Sinks
 from vsgraphs.view.surfaces import (
     Mesh,
+    box_outline,
     door_outline,
     name_place,
     plane_mesh,
@@ -56,6 +57,7 @@ def log_scene(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
     sinks.renew("world/planes", [f"world/planes/{p.role}/{p.id}" for p in graph.planes.values()])
     _log_planes(sinks, graph, up_from_graph)
     _log_rooms(sinks, graph, up_from_graph)
+    _log_boxes(sinks, graph, up_from_graph)
     _log_layers(sinks, layered_graph(graph, up_from_graph))
 
 
@@ -105,19 +107,35 @@ def _log_rooms(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
     )
 
 
+def _log_boxes(sinks: Sinks, graph: SceneGraph, up_from_graph: Array) -> None:
+    """Each kind that is drawn as its box under its section's name."""
+    rr = rerun()
+    for kind in KINDS:
+        if not kind.boxed:
+            continue
+        nodes = list(graph.section(kind.section).values())
+        boxes = [(node, box) for node in nodes if (box := kind.box(node, graph)) is not None]
+        outlines = [box_outline(box, up_from_graph) for _, box in boxes]
+        path = f"world/{kind.section}"
+        strips = rr.LineStrips3D(outlines, colors=[kind.colour], radii=rr.Radius.ui_points(2.0))
+        sinks.log(path, strips)
+        places = np.array([outline.max(axis=0) for outline in outlines]).reshape(-1, 3)
+        _log_names(sinks, f"{path}/names", places, [kind.title(node, graph) for node, _ in boxes])
+
+
 def _log_layers(sinks: Sinks, layered: LayeredGraph) -> None:
     rr = rerun()
     sizes = {"keyframe": 0.35, "plane": 0.9, "room": 1.6, "floor": 2.0}
     for kind, layer in layered.layers.items():
         sinks.log(
-            f"world/graph/{kind}s",
-            rr.Points3D(layer.places, colors=layer.colours, radii=layered.size_m * sizes[kind]),
+            f"world/graph/{layer.section}",
+            rr.Points3D(layer.places, colors=layer.colours, radii=layered.size_m * sizes.get(kind, 0.9)),
         )
         if any(layer.names):
-            above = layer.places + np.array([0.0, 0.0, 1.5 * layered.size_m * sizes[kind]])
-            _log_names(sinks, f"world/graph/{kind}s/names", above, layer.names)
+            above = layer.places + np.array([0.0, 0.0, 1.5 * layered.size_m * sizes.get(kind, 0.9)])
+            _log_names(sinks, f"world/graph/{layer.section}/names", above, layer.names)
     for kind, ends in layered.edges.items():
-        shades = np.full((len(ends), 4), _EDGE_ALPHA[kind], np.uint8)
+        shades = np.full((len(ends), 4), _EDGE_ALPHA.get(kind, 200), np.uint8)
         shades[:, :3] = layered.edge_colours[kind]
         width = {"observes_plane": 0.4, "door": 3.0}.get(kind, 1.3)
         sinks.log(

@@ -9,7 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vsgraphs.export.planes_ply import run_corners
-from vsgraphs.scene_graph import CLASS_COLOURS, DoorNode, PlaneNode, RoomNode, SceneGraph, transform_points
+from vsgraphs.scene_graph import (
+    CLASS_COLOURS,
+    Box,
+    DoorNode,
+    PlaneNode,
+    RoomNode,
+    SceneGraph,
+    transform_points,
+)
 from vsgraphs.trajectory import Array
 
 # Of rooms, in order of their ids; the same in plan and layered graph.
@@ -23,6 +31,7 @@ ROOM_COLOURS = (
     (70, 176, 190),
     (190, 118, 84),
 )
+_ALONG_EDGES = [0, 1, 2, 3, 0, 4, 5, 1, 5, 6, 2, 6, 7, 3, 7, 4]  # of a box's corners
 AREA_SHADE = 0.62  # of a room's colour on the ground: large areas in full colour outshine all else
 
 
@@ -116,6 +125,12 @@ def door_outline(door: DoorNode, up_from_graph: Array) -> Array:
     return np.array(
         [centre - along, centre + along, centre + along + rise, centre - along + rise, centre - along]
     )
+
+
+def box_outline(box: Box, up_from_graph: Array) -> Array:
+    """(16, 3) one line along all twelve edges, some of them twice."""
+    outline: Array = transform_points(up_from_graph, box.corners())[_ALONG_EDGES]
+    return outline
 
 
 def triangulate(polygon: Array) -> npt.NDArray[np.int64]:

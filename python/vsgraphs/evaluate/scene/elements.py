@@ -1,4 +1,4 @@
-"""Structural elements: rooms, floors (storeys) and doors against the true ones."""
+"""Structural elements against the true ones: rooms, floors, doors, kinds told by their middle."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from vsgraphs.evaluate.scene.options import SceneOptions
 from vsgraphs.evaluate.scene.raster import common_cells, intersection_over_union, rasterise
 from vsgraphs.evaluate.scene.scores import Detection, Match, not_estimated
 from vsgraphs.evaluate.scene.truth import SceneTruth
-from vsgraphs.scene_graph import FloorNode, RoomNode, SceneGraph, transform_points
+from vsgraphs.scene_graph import FloorNode, Kind, RoomNode, SceneGraph, transform_points
 from vsgraphs.trajectory import Array
 
 _ROOM_ERRORS = ("iou", "centroid_m")
 _FLOOR_ERRORS = ("height_m",)
-_DOOR_ERRORS = ("center_m",)
+_MIDDLE_ERRORS = ("center_m",)
 
 
 def score_rooms(
@@ -84,7 +84,7 @@ def score_doors(
     """By the middle of the threshold, and the same two rooms after those were matched (`rooms`)."""
     required = sum(door.required for door in truth.doors)
     if "doors" not in graph.estimated:
-        return not_estimated(required, _DOOR_ERRORS)
+        return not_estimated(required, _MIDDLE_ERRORS)
     true_name = {match.estimated: match.true for match in rooms.matches}
     pairs, ignored = [], set()
     for door in graph.doors.values():
@@ -98,10 +98,36 @@ def score_doors(
                 ignored.add(door.id)
             elif joined == true.rooms:
                 pairs.append((away, door.id, true.id))
-    score = Detection(true=required, error_names=_DOOR_ERRORS)
+    score = Detection(true=required, error_names=_MIDDLE_ERRORS)
     for away, number, name in _once(pairs, lambda pair: (pair[0], pair[1])):
         score.matches.append(Match(number, name, {"center_m": away}))
     return _counted(score, graph.doors, ignored)
+
+
+def score_by_middle(
+    kind: Kind[Any], graph: SceneGraph, truth: SceneTruth, truth_from_graph: Array
+) -> Detection | None:
+    """By the distance of the middles, the nearest first, each matched once; None: the truth lists none."""
+    if kind.truth not in truth.elements:
+        return None
+    listed = truth.elements[kind.truth]
+    required = sum(true.required for true in listed)
+    if kind.section not in graph.estimated:
+        return not_estimated(required, _MIDDLE_ERRORS)
+    nodes = graph.section(kind.section)
+    pairs, ignored = [], set()
+    for number, node in nodes.items():
+        center = transform_points(truth_from_graph, kind.place(node)[None])[0]
+        for true in listed:
+            away = float(np.linalg.norm(center - true.center))
+            if away <= kind.within_m and true.required:
+                pairs.append((away, number, true.id))
+            elif away <= kind.within_m:
+                ignored.add(number)
+    score = Detection(true=required, error_names=_MIDDLE_ERRORS)
+    for away, number, name in _once(pairs, lambda pair: (pair[0], pair[1])):
+        score.matches.append(Match(number, name, {"center_m": away}))
+    return _counted(score, nodes, ignored)
 
 
 def _once(pairs: list[Any], rank: Any) -> list[Any]:

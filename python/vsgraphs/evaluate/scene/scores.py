@@ -132,16 +132,31 @@ class MapScore:
 
 @dataclass
 class SceneScores:
-    """Scores of a scene graph. map: None where no points were given."""
+    """Scores of a scene graph. structure: structural elements by their section: rooms, floors, doors, others.
+    map: None where no points were given.
+    """
 
     walls: Detection
     ground: Detection
-    rooms: Detection
-    floors: Detection
-    doors: Detection
+    structure: dict[str, Detection]
     map: MapScore | None
     offset_tolerance_m: float
     notes: list[str] = field(default_factory=list)
+
+    @property
+    def rooms(self) -> Detection:
+        """Of `structure`."""
+        return self.structure["rooms"]
+
+    @property
+    def floors(self) -> Detection:
+        """Of `structure`."""
+        return self.structure["floors"]
+
+    @property
+    def doors(self) -> Detection:
+        """Of `structure`."""
+        return self.structure["doors"]
 
     @property
     def building_components(self) -> Detection:
@@ -158,11 +173,7 @@ class SceneScores:
                 "walls": self.walls.to_json(),
                 "ground": self.ground.to_json(),
             },
-            "structural_elements": {
-                "rooms": self.rooms.to_json(),
-                "floors": self.floors.to_json(),
-                "doors": self.doors.to_json(),
-            },
+            "structural_elements": {name: score.to_json() for name, score in self.structure.items()},
             "map": None if self.map is None else self.map.to_json(),
             "offset_tolerance_m": self.offset_tolerance_m,
             "notes": self.notes,

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from vsgraphs.evaluate.scene.components import aligned, score_ground, score_walls
-from vsgraphs.evaluate.scene.elements import score_doors, score_floors, score_rooms
+from vsgraphs.evaluate.scene.elements import score_by_middle, score_doors, score_floors, score_rooms
 from vsgraphs.evaluate.scene.map_points import score_map
 from vsgraphs.evaluate.scene.options import SceneOptions
-from vsgraphs.evaluate.scene.scores import SceneScores
+from vsgraphs.evaluate.scene.scores import Detection, SceneScores
 from vsgraphs.evaluate.scene.truth import SceneTruth
-from vsgraphs.scene_graph import SceneGraph, transform_points
+from vsgraphs.scene_graph import KINDS, SceneGraph, transform_points
 from vsgraphs.trajectory import Array
 
 _DEFAULTS = SceneOptions()
@@ -25,7 +25,7 @@ def evaluate_scene(
     map_points: Array | None = None,
     options: SceneOptions = _DEFAULTS,
 ) -> SceneScores:
-    """Scores walls, grounds, rooms, floors, doors and the map's points.
+    """Scores walls, grounds, rooms, floors, doors, what else the truth lists, and the map's points.
 
     alignment: (4, 4) truth_from_graph, of the trajectory (`align_poses`), never of the planes. ate_m: the
     trajectory's ATE, which loosens the offset tolerance (SceneOptions). map_points: (M, 3) in the graph's
@@ -34,14 +34,27 @@ def evaluate_scene(
     tolerance_m = options.offset_tolerance_m(ate_m)
     walls = [aligned(plane, alignment) for plane in graph.planes_of("wall")]
     grounds = [aligned(plane, alignment) for plane in graph.planes_of("ground")]
-    rooms = score_rooms(graph, truth, alignment, options)
     points = None if map_points is None else transform_points(alignment, np.asarray(map_points))
     return SceneScores(
         walls=score_walls(walls, truth, tolerance_m, options),
         ground=score_ground(grounds, truth, tolerance_m, options),
-        rooms=rooms,
-        floors=score_floors(graph, truth, alignment, options),
-        doors=score_doors(graph, truth, alignment, options, rooms),
+        structure=_structure(graph, truth, alignment, options),
         map=None if points is None else score_map(points, truth, options),
         offset_tolerance_m=tolerance_m,
     )
+
+
+def _structure(
+    graph: SceneGraph, truth: SceneTruth, alignment: Array, options: SceneOptions
+) -> dict[str, Detection]:
+    rooms = score_rooms(graph, truth, alignment, options)
+    scores = {
+        "rooms": rooms,
+        "floors": score_floors(graph, truth, alignment, options),
+        "doors": score_doors(graph, truth, alignment, options, rooms),
+    }
+    for kind in KINDS:
+        score = score_by_middle(kind, graph, truth, alignment)
+        if score is not None:
+            scores[kind.section] = score
+    return scores

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vsgraphs.errors import InputError
+from vsgraphs.evaluate.scene.truth_values import number_of, outline_of, point_of
 from vsgraphs.reading import LARGE, read_json, shortened, shown
+from vsgraphs.scene_graph import KINDS
 from vsgraphs.trajectory import Array
 
 _COPLANAR_M = 0.05
-_LARGEST_M = 1e5  # of a building
 
 
 @dataclass(eq=False)
@@ -84,13 +85,23 @@ class TrueDoor:
 
 
 @dataclass(eq=False)
+class TrueElement:
+    """Anything else that is scored by its middle, center (3,). required: must be found."""
+
+    id: str
+    center: Array
+    required: bool
+
+
+@dataclass(eq=False)
 class SceneTruth:
-    """Everything that is scored."""
+    """Everything that is scored. elements: by the name of their list, of those lists that are there."""
 
     rooms: list[TrueRoom]
     walls: list[TrueWall]
     grounds: list[TrueGround]
     doors: list[TrueDoor]
+    elements: dict[str, list[TrueElement]] = field(default_factory=dict)
 
     def storeys(self) -> dict[int, list[TrueRoom]]:
         """Level -> its rooms."""
@@ -114,18 +125,19 @@ def parse_scene_truth(document: Any, source: str) -> SceneTruth:
         required = {room.id: room.required for room in rooms}
         walls = [_wall(row) for row in document["walls"]]
         doors = [_door(row, required) for row in document.get("doors", ())]
+        elements = _elements(document, required)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
         what = shortened(f"no {error}" if isinstance(error, KeyError) else str(error))
         raise InputError(f"{source}: broken scene truth: {what}") from None
-    return SceneTruth(rooms, walls, _grounds(rooms), doors)
+    return SceneTruth(rooms, walls, _grounds(rooms), doors, elements)
 
 
 def _room(row: Mapping[str, Any]) -> TrueRoom:
     return TrueRoom(
         id=str(row["id"]),
-        polygon=_outline(row["polygon"]),
-        z_floor=_number(row["z_floor"]),
-        height_m=_number(row["height"]),
+        polygon=outline_of(row["polygon"]),
+        z_floor=number_of(row["z_floor"]),
+        height_m=number_of(row["height"]),
         level=int(row.get("level", 0)),
         required=bool(row["counted"]) and bool(row["visited"]),
     )
@@ -135,10 +147,10 @@ def _wall(row: Mapping[str, Any]) -> TrueWall:
     wall = TrueWall(
         id=str(row["id"]),
         room=str(row["room"]),
-        start=_point(row["p0"]),
-        end=_point(row["p1"]),
-        height_m=_number(row["height"]),
-        normal=_point(row["n"]),
+        start=point_of(row["p0"]),
+        end=point_of(row["p1"]),
+        height_m=number_of(row["height"]),
+        normal=point_of(row["n"]),
         required=bool(row["counted"]) and bool(row["observed"]),
     )
     if not wall.length_m or not wall.normal.any():
@@ -151,30 +163,31 @@ def _door(row: Mapping[str, Any], required: Mapping[str, bool]) -> TrueDoor:
     return TrueDoor(
         id=str(row["id"]),
         rooms=rooms,
-        center=_point(row["center"]),
+        center=point_of(row["center"]),
         required=all(required.get(room, False) for room in rooms),
     )
 
 
-def _point(value: Any) -> Array:
-    return _measured(np.array(value, dtype=np.float64).reshape(3))
+def _elements(document: Mapping[str, Any], required: Mapping[str, bool]) -> dict[str, list[TrueElement]]:
+    """The lists that kinds of nodes are scored against, of those that tell middles.
 
-
-def _outline(value: Any) -> Array:
-    corners = np.array(value, dtype=np.float64)
-    if corners.ndim != 2 or len(corners) < 3 or corners.shape[1] < 2:
-        raise ValueError(f"a polygon of shape {corners.shape}, expected at least 3 corners")
-    return _measured(corners[:, :2])
-
-
-def _number(value: Any) -> float:
-    return float(_measured(np.array(value, dtype=np.float64)))
-
-
-def _measured(lengths: Array) -> Array:
-    if not (np.abs(lengths) <= _LARGEST_M).all():  # false for NaN, too
-        raise ValueError(f"a length beyond {_LARGEST_M:g} m")
-    return lengths
+    Rows: id, center, room (in which it is), and counted, observed as of walls; true where they are not told.
+    """
+    found: dict[str, list[TrueElement]] = {}
+    for name in (kind.truth for kind in KINDS if kind.truth):
+        listed = document.get(name)
+        if listed is None or not all("center" in row for row in listed):
+            continue
+        found[name] = [
+            TrueElement(
+                id=str(row["id"]),
+                center=point_of(row["center"]),
+                required=required.get(str(row["room"]), False)
+                and all(bool(row.get(told, True)) for told in ("counted", "observed")),
+            )
+            for row in listed
+        ]
+    return found
 
 
 def _grounds(rooms: list[TrueRoom]) -> list[TrueGround]:

@@ -16,10 +16,12 @@ from vsgraphs.export.floorplan.style import (
     PATH,
     SOFT_INK,
     WALL,
+    hex_colour,
 )
 from vsgraphs.export.floorplan.svg import Page
 from vsgraphs.export.floorplan.view import PlanView
-from vsgraphs.scene_graph import SceneGraph
+from vsgraphs.scene_graph import KINDS, SceneGraph
+from vsgraphs.scene_graph.kinds import count
 from vsgraphs.trajectory import Array
 
 
@@ -39,6 +41,8 @@ def draw_title(page: Page, graph: SceneGraph, title: str, left: float) -> None:
     facts.append(_count(len(graph.planes_of("wall")), "wall"))
     if "doors" in graph.estimated:
         facts.append(_count(len(graph.doors), "door"))
+    boxed = [(kind, len(graph.section(kind.section))) for kind in KINDS if kind.boxed and kind.in_plan]
+    facts += [count(number, kind.name, kind.section) for kind, number in boxed if number]
     if graph.frame.ground is None:  # heights are from something else than readers take for granted
         facts.append(f"z = 0: {graph.frame.zero_height}")
     page.text(left, 61, "  ·  ".join(facts), font_size=12, fill=SOFT_INK)
@@ -101,6 +105,9 @@ def _entries(storeys: list[Storey]) -> list[tuple[str, float, _Symbol]]:
         entries.append(("door", 76, _stroke(DOOR)))
     if "passage" in kinds:
         entries.append(("passage", 90, _stroke(DOOR, "4 3")))
+    for kind in dict.fromkeys(kind for storey in storeys for kind, _ in storey.boxes):
+        colour = hex_colour(kind.colour)
+        entries.append((kind.name, 40 + 7 * len(kind.name), _swatch(colour, colour)))
     if any(storey.path for storey in storeys):
         entries.append(("camera path", 100, _stroke(PATH)))
     return entries

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from vsgraphs.export.floorplan.strips import Strip, cut_doors, join_corners, strips_of
 from vsgraphs.export.floorplan.view import PlanView
-from vsgraphs.scene_graph import DoorNode, MarkerNode, PlaneNode, RoomNode, SceneGraph
+from vsgraphs.scene_graph import KINDS, Box, DoorNode, Kind, MarkerNode, PlaneNode, RoomNode, SceneGraph
 from vsgraphs.trajectory import Array
 
 _APART_M = 1.5  # grounds nearer in height are steps of one storey
@@ -17,8 +19,8 @@ _BELOW_M = 0.5
 
 @dataclass(eq=False)
 class Storey:
-    """floor_m, top_m: heights along up between which it lies. path: stretches of (N, 2) places walked; start,
-    end: of the whole path, where it begins or ends here.
+    """floor_m, top_m: heights along up between which it lies. boxes: what is drawn as a box, with its kind.
+    path: stretches of (N, 2) places walked; start, end: of the whole path, where it begins or ends here.
     """
 
     floor_m: float
@@ -28,6 +30,7 @@ class Storey:
     doors: list[DoorNode] = field(default_factory=list)
     markers: list[MarkerNode] = field(default_factory=list)
     grounds: list[PlaneNode] = field(default_factory=list)
+    boxes: list[tuple[Kind[Any], Box]] = field(default_factory=list)
     path: list[Array] = field(default_factory=list)
     start: Array | None = None
     end: Array | None = None
@@ -52,10 +55,26 @@ def storeys_of(graph: SceneGraph, view: PlanView, positions: Array) -> list[Stor
         storey.markers = [
             m for m in graph.markers.values() if storey.holds(_height(m.world_from_marker[:3, 3], view))
         ]
+        storey.boxes = list(_boxes(graph, storey, view))
         walls = [s for p in graph.planes_of("wall") for s in strips_of(p, view, storey.floor_m, storey.top_m)]
         storey.strips = cut_doors(join_corners(walls), storey.doors, view)
     _walk(storeys, view, positions)
     return storeys
+
+
+def _boxes(graph: SceneGraph, storey: Storey, view: PlanView) -> Iterator[tuple[Kind[Any], Box]]:
+    """Of what is in a room, where the room is; of all else, by the height of its foot."""
+    rooms = {("room", room.id) for room in storey.rooms}
+    for kind in KINDS:
+        if not (kind.boxed and kind.in_plan):
+            continue
+        for node in graph.section(kind.section).values():
+            box, parent = kind.box(node, graph), kind.parent(node)
+            if box is None:
+                continue
+            foot = float(view.height(box.corners()).min())
+            if parent in rooms if parent is not None else storey.holds(foot):
+                yield kind, box
 
 
 def _floor_heights(graph: SceneGraph, view: PlanView) -> list[float]:
