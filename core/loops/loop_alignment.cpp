@@ -4,7 +4,6 @@
 
 #include "core/matching/frame_pose.h"
 #include "core/matching/local_map.h"
-#include "core/solve/align_matches.h"
 #include "core/vision/matching.h"
 
 namespace vsgraphs {
@@ -47,34 +46,12 @@ std::optional<LoopAlignment> LoopAligner::align(const Map& map, KeyframeId keyfr
                                                 Rng rng) const {
   const Keyframe& now = *map.keyframes().find(keyframe);
   const Keyframe& then = *map.keyframes().find(place.centre);
-  const std::optional<Se3> rough = align_by_look(map, now, then, rng);
+  const auto rough = by_descriptors_.align(map, posed_view(then), *now.features, options_.min_aligned, rng);
   if (!rough) return std::nullopt;
-  auto found = search_around(map, keyframe, *rough, landmarks_of(map, place.keyframes));
+  auto found =
+      search_around(map, keyframe, rough->pose.world_from_camera, landmarks_of(map, place.keyframes));
   if (found && static_cast<int>(found->sights.size()) < options_.min_inliers) found.reset();
   return found;
-}
-
-std::optional<Se3> LoopAligner::align_by_look(const Map& map, const Keyframe& now, const Keyframe& then,
-                                              Rng rng) const {
-  MatchOptions matching;
-  matching.max_distance = 64;
-  matching.ratio = 0.85;
-  matching.check_rotation = true;
-  std::vector<PoseObservation> observations;
-  for (const auto& [there, here] : match_descriptors(*then.features, *now.features, matching)) {
-    const Landmark* landmark = map.landmarks().find(then.landmarks[static_cast<std::size_t>(there)]);
-    const Feature& seen = (*then.features)[there];
-    if (!landmark && !seen.has_depth()) continue;
-    const Eigen::Vector3d point =
-        landmark ? landmark->point_in_world
-                 : then.world_from_camera * camera_.unproject(seen.u, seen.v, seen.depth_m);
-    observations.push_back(pose_observation(camera_, pyramid_, (*now.features)[here], point));
-  }
-  AlignMatchesOptions aligning;
-  aligning.min_inliers = options_.min_aligned;
-  const auto aligned = align_matches(Intrinsics::of(camera_), observations, rng, aligning);
-  if (!aligned || aligned->degenerate) return std::nullopt;
-  return aligned->world_from_camera;
 }
 
 std::optional<LoopAlignment> LoopAligner::search_around(const Map& map, KeyframeId id, const Se3& start,

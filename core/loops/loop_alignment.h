@@ -1,5 +1,5 @@
 // Where a keyframe stands as its features see it from a place the map knows from elsewhere: the geometric half of a loop's
-// verification. Matches by look, a pose by RANSAC over three points with depth, then all that lies around searched by
+// verification. A pose by descriptors alone (matching/descriptor_alignment.h), then all that lies around searched by
 // projection, and the keyframe's neighbours asked whether they see the place too (after Campos et al., "ORB-SLAM3", T-RO
 // 2021, section VI: verification by covisible keyframes instead of waiting for further ones).
 #pragma once
@@ -12,6 +12,7 @@
 #include "core/base/rng.h"
 #include "core/geometry/camera.h"
 #include "core/map/map.h"
+#include "core/matching/descriptor_alignment.h"
 #include "core/vision/scale_pyramid.h"
 
 namespace vsgraphs {
@@ -55,7 +56,7 @@ struct LoopAlignment {
 class LoopAligner {
  public:
   LoopAligner(const LoopAlignmentOptions& options, const Camera& camera, const ScalePyramid& pyramid)
-      : options_(options), camera_(camera), pyramid_(pyramid) {}
+      : options_(options), camera_(camera), pyramid_(pyramid), by_descriptors_(camera, pyramid) {}
 
   // `keyframe` against `place`; `rng` draws the hypotheses. Cost: about 5 ms.
   std::optional<LoopAlignment> align(const Map& map, KeyframeId keyframe, const MappedPlace& place,
@@ -66,7 +67,6 @@ class LoopAligner {
                                      const std::vector<KeyframeId>& neighbours) const;
 
  private:
-  std::optional<Se3> align_by_look(const Map& map, const Keyframe& now, const Keyframe& then, Rng rng) const;
   std::optional<LoopAlignment> search_around(const Map& map, KeyframeId keyframe,
                                              const Se3& world_from_camera,
                                              const std::vector<LandmarkId>& landmarks) const;
@@ -74,6 +74,7 @@ class LoopAligner {
   LoopAlignmentOptions options_;
   Camera camera_;
   ScalePyramid pyramid_;
+  DescriptorAligner by_descriptors_;
 };
 
 }  // namespace vsgraphs

@@ -26,11 +26,27 @@ void FrameMatches::keep(std::span<const std::uint8_t> flags) {
   all_.resize(kept);
 }
 
+void FrameMatches::keep_inliers(std::span<const ObservationFit> fit) {
+  std::vector<std::uint8_t> flags(fit.size());
+  std::transform(fit.begin(), fit.end(), flags.begin(),
+                 [](ObservationFit f) { return static_cast<std::uint8_t>(is_inlier(f)); });
+  keep(flags);
+}
+
 void FrameMatches::keep_landmarks_only() {
   std::vector<std::uint8_t> flags(all_.size());
   std::transform(all_.begin(), all_.end(), flags.begin(),
                  [](const Correspondence& c) { return static_cast<std::uint8_t>(c.landmark.valid()); });
   keep(flags);
+}
+
+std::vector<LandmarkId> FrameMatches::landmarks() const {
+  std::vector<LandmarkId> ids;
+  ids.reserve(all_.size());
+  for (const Correspondence& c : all_) {
+    if (c.landmark.valid()) ids.push_back(c.landmark);
+  }
+  return ids;
 }
 
 PoseObservation pose_observation(const Camera& camera, const ScalePyramid& pyramid, const Feature& feature,
@@ -62,9 +78,7 @@ FramePose solve_frame_pose(const Camera& camera, const ScalePyramid& pyramid, co
                            const Se3& initial, FrameMatches& matches, std::span<const PointToPlane> planes) {
   const std::vector<PoseObservation> observations = pose_observations(camera, pyramid, features, matches);
   const PoseSolution solution = solve_pose(Intrinsics::of(camera), initial, observations, planes);
-  std::vector<std::uint8_t> inlier(observations.size());
-  for (std::size_t i = 0; i < inlier.size(); ++i) inlier[i] = is_inlier(solution.fit[i]);
-  matches.keep(inlier);
+  matches.keep_inliers(solution.fit);
   return {solution.world_from_camera, solution.inliers,     !solution.degenerate,
           solution.information,       solution.information, solution.degenerate};
 }

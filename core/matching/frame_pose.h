@@ -32,8 +32,12 @@ class FrameMatches {
   int size() const { return static_cast<int>(all_.size()); }
   // Keeps those whose flag is set.
   void keep(std::span<const std::uint8_t> flags);
+  // Keeps those that a solver's answer fits; one entry per match, in their order.
+  void keep_inliers(std::span<const ObservationFit> fit);
   // Drops those that have no landmark.
   void keep_landmarks_only();
+  // The landmarks matched, in the order of the matches.
+  std::vector<LandmarkId> landmarks() const;
 
  private:
   std::vector<Correspondence> all_;
@@ -47,6 +51,12 @@ struct FramePose {
   Matrix6d information = Matrix6d::Zero();  // of the measurements, tangent on the right of the pose
   Matrix6d measured = Matrix6d::Zero();  // the same with everything that was measured, surfaces and features
   bool degenerate = false;               // part of the pose is only what the motion model predicted
+};
+
+// A pose and the matches that hold it.
+struct MatchedPose {
+  FramePose pose;
+  FrameMatches matches;
 };
 
 // Weights of one feature's measurements, from the level it was found at and the sensor's depth noise.

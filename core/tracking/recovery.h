@@ -1,15 +1,13 @@
-// Finding the pose where prediction failed: features are matched by descriptor alone, against the last frame and
-// its reference keyframe after a large step, or against any keyframe after a loss. The pose comes from a RANSAC
-// over matches with depth on both sides or one, and is then solved like any other.
+// Finding the pose where prediction failed: by descriptors alone (matching/descriptor_alignment.h), against the last frame
+// and its reference keyframe after a large step, or against any keyframe after a loss.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/base/options.h"
 #include "core/map/map.h"
-#include "core/matching/frame_pose.h"
+#include "core/matching/descriptor_alignment.h"
 #include "core/matching/messages.h"
 
 namespace vsgraphs {
@@ -43,34 +41,25 @@ class Recovery {
  public:
   Recovery(const RecoveryOptions& options, const Camera& camera, const ScalePyramid& pyramid,
            std::uint64_t seed)
-      : options_(options), camera_(camera), pyramid_(pyramid), seed_(seed) {}
+      : options_(options), aligner_(camera, pyramid), seed_(seed) {}
 
-  // Against the last frame (its landmarks and depth) and a keyframe; the better one wins. Fills `matches`.
-  std::optional<FramePose> from_recent(const Map& map, const FeatureSet& now, std::int64_t frame_index,
-                                       const FeatureSet& last, std::span<const LandmarkId> last_landmarks,
-                                       const Se3& world_from_last, KeyframeId keyframe,
-                                       FrameMatches& matches);
+  // Against the last frame (its landmarks and depth) and a keyframe; the better one wins. Cost: a few ms.
+  std::optional<MatchedPose> from_recent(const Map& map, const FeatureSet& now, std::int64_t frame_index,
+                                         const PosedView& last, KeyframeId keyframe) const;
 
   // The keyframes to try for a frame, at most `max_candidates`: up to half of them from `last_room` (where it is one),
   // tried first, then those that look most alike anywhere; each group best first. 2 to 3 ms for 2,000 keyframes.
   std::vector<KeyframeId> likely_places(const KnownMap& known, const FeatureSet& now,
                                         RoomNumber last_room) const;
-  // Against one of them. Fills `matches`. Cost: a few ms.
-  std::optional<FramePose> from_keyframe(const Map& map, KeyframeId keyframe, const FeatureSet& now,
-                                         std::int64_t frame_index, FrameMatches& matches) const;
+  // Against one of them. Cost: a few ms.
+  std::optional<MatchedPose> from_keyframe(const Map& map, KeyframeId keyframe, const FeatureSet& now,
+                                           std::int64_t frame_index) const;
 
  private:
-  struct Source {
-    const FeatureSet* features;
-    std::span<const LandmarkId> landmarks;
-    Se3 world_from_camera;
-  };
-  std::optional<FramePose> align(const Map& map, const Source& source, const FeatureSet& now,
-                                 std::int64_t frame_index, int min_inliers, FrameMatches& matches) const;
+  Rng draws(std::int64_t frame_index) const;
 
   RecoveryOptions options_;
-  Camera camera_;
-  ScalePyramid pyramid_;
+  DescriptorAligner aligner_;
   std::uint64_t seed_;
 };
 

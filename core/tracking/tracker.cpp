@@ -101,11 +101,11 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
   const Span span(trace, "relocalise");
   if (last_in) {
     const auto& last = *last_;
-    const auto pose =
-        search_around(*last_in->map,
-                      recovery_.from_recent(*last_in->map, *now_.features, now_.index, *last.features,
-                                            last.landmarks, *last_world_, last.pose.keyframe, matches_),
-                      last.pose.keyframe, options_.recovery.min_relocalisation_inliers);
+    const auto pose = search_around(
+        *last_in->map,
+        recovery_.from_recent(*last_in->map, *now_.features, now_.index,
+                              {*last.features, last.landmarks, *last_world_}, last.pose.keyframe),
+        last.pose.keyframe, options_.recovery.min_relocalisation_inliers);
     if (pose && believable(pose->world_from_camera, now_.timestamp_s - last.timestamp_s))
       return Found{last_in, *pose};
   }
@@ -124,8 +124,8 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
     const int enough = (may_wait ? 2 : 1) * options_.recovery.min_place_inliers;
     const RoomNumber last_room = was_here ? map.room_at(last_world_->translation()) : no_room;
     for (const KeyframeId place : recovery_.likely_places(*candidate, *now_.features, last_room)) {
-      const auto pose = search_around(
-          map, recovery_.from_keyframe(map, place, *now_.features, now_.index, matches_), place, enough);
+      const auto pose =
+          search_around(map, recovery_.from_keyframe(map, place, *now_.features, now_.index), place, enough);
       if (!pose) continue;
       if (was_here && !believable(pose->world_from_camera, now_.timestamp_s - last_->timestamp_s)) continue;
       return Found{candidate, *pose};
@@ -136,8 +136,11 @@ std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const 
 
 // A pose by look from one keyframe may rest on few matches: what lies around is looked for, first widely, then narrowly,
 // and must be there.
-std::optional<FramePose> Tracker::search_around(const Map& map, std::optional<FramePose> guess,
+std::optional<FramePose> Tracker::search_around(const Map& map, std::optional<MatchedPose> found,
                                                 KeyframeId near, int min_inliers) {
+  if (!found) return std::nullopt;
+  std::optional<FramePose> guess = found->pose;
+  matches_ = std::move(found->matches);
   for (const double radius_px : {options_.search_radius_px, options_.local_search_radius_px}) {
     if (!guess) return std::nullopt;
     guess = refine_on_local_map(map, *guess, near, radius_px);

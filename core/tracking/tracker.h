@@ -105,7 +105,7 @@ class Tracker {
     FramePose pose;
   };
   std::optional<Found> relocalise(const KnownMaps& known, const KnownMap* last_in, TraceSink* trace);
-  std::optional<FramePose> search_around(const Map& map, std::optional<FramePose> guess, KeyframeId near,
+  std::optional<FramePose> search_around(const Map& map, std::optional<MatchedPose> found, KeyframeId near,
                                          int min_inliers);
   std::optional<FramePose> match_recent(const Map& map, bool& guessed, TraceSink* trace);
   double match_last_frame(const Map& map, const Se3& predicted, double radius_px,

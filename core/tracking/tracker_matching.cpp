@@ -43,9 +43,13 @@ std::optional<FramePose> Tracker::match_recent(const Map& map, bool& guessed, Tr
   }
   if (!best || best->inliers < plenty) {
     const Span span(trace, "recover");
-    keep_if_better(recovery_.from_recent(map, *now_.features, now_.index, *last_->features, last_->landmarks,
-                                         *last_world_, last_->pose.keyframe, matches_),
-                   true);
+    auto found =
+        recovery_.from_recent(map, *now_.features, now_.index,
+                              {*last_->features, last_->landmarks, *last_world_}, last_->pose.keyframe);
+    if (found) {
+      matches_ = std::move(found->matches);
+      keep_if_better(found->pose, true);
+    }
   }
   matches_ = std::move(best_matches);
   return best;
