@@ -30,7 +30,7 @@ class DescriptorAligner {
 
   // World pose of the camera that saw `now`, with the matches that agree with it: landmarks of `there`, and its bare depth
   // readings where a feature has none. Empty where fewer than `min_inliers` agree or they do not hold all six directions.
-  // `rng` draws the hypotheses. Cost: 2 ms for 1,000 features on either side, up to 3 ms more where few of them agree.
+  // `rng` draws the hypotheses. Cost: a few ms for 1,000 features on either side, most of it the matching.
   std::optional<MatchedPose> align(const Map& map, const PosedView& there, const FeatureSet& now,
                                    int min_inliers, Rng rng) const;
 

@@ -53,10 +53,11 @@ struct FramePose {
   bool degenerate = false;               // part of the pose is only what the motion model predicted
 };
 
-// A pose and the matches that hold it.
+// A pose and what holds it.
 struct MatchedPose {
   FramePose pose;
   FrameMatches matches;
+  KeyframeId surface_reference;  // whose surfaces hold it; invalid where matches alone do
 };
 
 // Weights of one feature's measurements, from the level it was found at and the sensor's depth noise.

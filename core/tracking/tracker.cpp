@@ -1,208 +1,169 @@
 #include "core/tracking/tracker.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "core/vision/grey.h"
+#include "core/tracking/frame_anchor.h"
+#include "core/tracking/motion_prior.h"
 
 namespace vsgraphs {
 
-const char* to_string(TrackStatus status) {
-  switch (status) {
-    case TrackStatus::waiting:
-      return "waiting";
-    case TrackStatus::initialised:
-      return "initialised";
-    case TrackStatus::ok:
-      return "ok";
-    case TrackStatus::coasting:
-      return "coasting";
-    case TrackStatus::lost:
-      return "lost";
-    case TrackStatus::relocalised:
-      return "relocalised";
-  }
-  return "unknown";
+namespace {
+
+TrackedFrame report(const FrameState& now, TrackStatus status, const Se3& world_from_camera) {
+  TrackedFrame result;
+  result.index = now.index;
+  result.timestamp_s = now.timestamp_s;
+  result.status = status;
+  result.pose = now.pose;
+  result.world_from_camera = world_from_camera;
+  return result;
 }
+
+}  // namespace
 
 Tracker::Tracker(const TrackerOptions& options, const OrbOptions& orb, const Camera& camera,
                  std::uint64_t seed)
     : options_(options),
-      camera_(camera),
       pyramid_{orb.levels, orb.scale_factor},
-      extractor_(orb, camera),
       aligner_(camera),
-      recovery_(options.recovery, camera, pyramid_, seed) {}
+      recovery_(options.recovery, camera, pyramid_, seed),
+      extractor_(orb, camera),
+      last_frame_matcher_(options, camera, pyramid_, recovery_),
+      local_map_matcher_(options, camera, pyramid_),
+      verifier_(options.recovery, camera, aligner_),
+      surfaces_(options, camera, pyramid_, aligner_, local_map_matcher_),
+      relocaliser_(options, recovery_, verifier_, local_map_matcher_),
+      loss_(options),
+      keyframes_(options.keyframe) {}
 
 TrackedFrame Tracker::track(const RgbdFrame& frame, const KnownMaps& known, int backlog, TraceSink* trace) {
-  extract(frame, trace);
-  visible_now_.clear();
-  if (known.empty() && !last_) return enough_to_start() ? start() : report(TrackStatus::waiting, Se3{});
+  FrameState now = extract(frame, trace);
+  if (known.empty() && !last_.exists())
+    return enough_to_start(now) ? start(now) : report(now, TrackStatus::waiting, Se3{});
   const KnownMap* last_in = place_last_frame(known);
-  if (!last_in) lost_ = true;
-  if (lost_) {
-    const auto found = relocalise(known, last_in, trace);
-    return found ? finish_relocalised(known, *found, backlog) : stay_lost();
+  if (!last_in) loss_.lose();
+  if (loss_.lost()) {
+    const auto again = relocalise(known, last_in, now, trace);
+    if (!again) return stay_lost(now);
+    return resume(*again->in->map, again->found, again->in != &known.active, now, backlog);
   }
-  const Map& map = *last_in->map;
-  const double seconds = now_.timestamp_s - last_->timestamp_s;
-  predicted_ = motion_.predict(*last_world_, seconds);
-  const std::optional<FramePose> pose = follow(map, seconds, trace);
-  if (pose) return finish(map, *pose, last_->pose.keyframe, backlog);
-  ++unmeasured_frames_;
-  return loses_track() ? stay_lost() : coast(map);
+  const FrameStep step = step_to(now, *last_in->map);
+  const std::optional<MatchedPose> found = follow(step, trace);
+  if (found) return go_on(step, *found, now, backlog);
+  return loss_.coasts(now.timestamp_s) ? coast(step, now) : stay_lost(now);
 }
 
-// The map that holds the last frame, which may have been moved or joined with another since; null if none does.
-const KnownMap* Tracker::place_last_frame(const KnownMaps& known) {
-  last_world_.reset();
-  if (!last_) return nullptr;
-  // The keyframe made of a frame that started a map had no name then.
-  if (!last_->pose.keyframe.valid()) {
-    last_->pose.keyframe = known.active.map->keyframe_of_frame(last_->index);
-    if (!last_keyframe_pose_->keyframe.valid()) last_keyframe_pose_->keyframe = last_->pose.keyframe;
-  }
-  const auto holds = [this](const KnownMap& candidate) {
-    const auto living = candidate.map->reanchor(last_->pose);
-    if (!living) return false;
-    last_->pose = *living;
-    last_world_ = *candidate.map->resolve(*living);
-    adopt_landmarks_of_own_keyframe(*candidate.map);
-    return true;
-  };
-  if (holds(known.active)) return &known.active;
-  for (const KnownMap& dormant : known.dormant) {
-    if (holds(dormant)) return &dormant;
-  }
-  return nullptr;
-}
-
-std::optional<FramePose> Tracker::follow(const Map& map, double seconds, TraceSink* trace) {
-  bool guessed = false;  // found without prediction: to be checked against the surfaces
-  std::optional<FramePose> pose = match_recent(map, guessed, trace);
-  if (pose) {
-    const Span span(trace, "match_local_map");
-    pose = refine_on_local_map(map, *pose, last_->pose.keyframe, options_.local_search_radius_px);
-  }
-  if (pose && guessed && !surfaces_agree(map, *pose)) pose.reset();
-  if (pose && leaps(*pose) && !leaves_surfaces_standing(map, *pose)) pose.reset();
-  if (pose && !believable(pose->world_from_camera, seconds)) pose.reset();
-  if (!pose || pose->inliers < options_.few_inliers) {
-    const Span span(trace, "align_surfaces");
-    pose = align_surfaces(map, pose, seconds);
-  }
-  return pose;
-}
-
-// Whatever might be the place is tried to the end: the last frame's surroundings first, then what looks most alike, in the
-// map the camera was lost in, the active one and the others.
-std::optional<Tracker::Found> Tracker::relocalise(const KnownMaps& known, const KnownMap* last_in,
-                                                  TraceSink* trace) {
-  const Span span(trace, "relocalise");
-  if (last_in) {
-    const auto& last = *last_;
-    const auto pose = search_around(
-        *last_in->map,
-        recovery_.from_recent(*last_in->map, *now_.features, now_.index,
-                              {*last.features, last.landmarks, *last_world_}, last.pose.keyframe),
-        last.pose.keyframe, options_.recovery.min_relocalisation_inliers);
-    if (pose && believable(pose->world_from_camera, now_.timestamp_s - last.timestamp_s))
-      return Found{last_in, *pose};
-  }
-  std::vector<const KnownMap*> order;
-  if (last_in) order.push_back(last_in);
-  if (last_in != &known.active) order.push_back(&known.active);
-  for (const KnownMap& dormant : known.dormant) {
-    if (last_in != &dormant) order.push_back(&dormant);
-  }
-  for (const KnownMap* candidate : order) {
-    const Map& map = *candidate->map;
-    const bool was_here = candidate == last_in;
-    // Nothing says that the camera is in this map at all. Where it may start one of its own there is time: what the two have in
-    // common will show, from more than one view.
-    const bool may_wait = !was_here && std::isfinite(options_.new_map_after_s);
-    const int enough = (may_wait ? 2 : 1) * options_.recovery.min_place_inliers;
-    const RoomNumber last_room = was_here ? map.room_at(last_world_->translation()) : no_room;
-    for (const KeyframeId place : recovery_.likely_places(*candidate, *now_.features, last_room)) {
-      const auto pose =
-          search_around(map, recovery_.from_keyframe(map, place, *now_.features, now_.index), place, enough);
-      if (!pose) continue;
-      if (was_here && !believable(pose->world_from_camera, now_.timestamp_s - last_->timestamp_s)) continue;
-      return Found{candidate, *pose};
-    }
-  }
-  return std::nullopt;
-}
-
-// A pose by look from one keyframe may rest on few matches: what lies around is looked for, first widely, then narrowly,
-// and must be there.
-std::optional<FramePose> Tracker::search_around(const Map& map, std::optional<MatchedPose> found,
-                                                KeyframeId near, int min_inliers) {
-  if (!found) return std::nullopt;
-  std::optional<FramePose> guess = found->pose;
-  matches_ = std::move(found->matches);
-  for (const double radius_px : {options_.search_radius_px, options_.local_search_radius_px}) {
-    if (!guess) return std::nullopt;
-    guess = refine_on_local_map(map, *guess, near, radius_px);
-  }
-  const bool good = guess && guess->inliers >= min_inliers && surfaces_agree(map, *guess) &&
-                    leaves_surfaces_standing(map, *guess);
-  return good ? guess : std::nullopt;
-}
-
-void Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
+FrameState Tracker::extract(const RgbdFrame& frame, TraceSink* trace) {
   const Span span(trace, "extract");
-  now_ = FrameState{};
-  now_.index = frame.index;
-  now_.timestamp_s = frame.timestamp_s;
-  ImageView<std::uint8_t> grey = frame.grey;
-  if (grey.empty()) {
-    to_grey(frame.colour, grey_);
-    grey = grey_.view();
-  }
-  now_.features = std::make_shared<const FeatureSet>(extractor_.extract(grey, frame.depth, frame.colour));
-  now_.surface = std::make_shared<const DepthGrid>(aligner_.sampler().sample(frame.depth));
-  now_.landmarks.assign(static_cast<std::size_t>(now_.features->size()), LandmarkId{});
+  return extractor_.extract(frame);
 }
 
-bool Tracker::enough_to_start() const {
-  const auto with_depth = std::count_if(now_.features->features().begin(), now_.features->features().end(),
-                                        [](const Feature& f) { return f.has_depth(); });
-  return with_depth >= options_.min_features_to_start;
+bool Tracker::enough_to_start(const FrameState& now) const {
+  return now.features_with_depth() >= options_.min_features_to_start;
+}
+
+const KnownMap* Tracker::place_last_frame(const KnownMaps& known) {
+  const KeyframeId first = last_.name_own_keyframe(*known.active.map);
+  if (first.valid()) keyframes_.name_first(first);
+  return last_.find_in(known);
+}
+
+FrameStep Tracker::step_to(const FrameState& now, const Map& map) const {
+  const double seconds = now.timestamp_s - last_.state().timestamp_s;
+  const Se3& world_from_last = last_.world_from_camera();
+  const Se3 predicted = motion_.predict(world_from_last, seconds);
+  const MotionGate gate(options_, world_from_last, seconds,
+                        motion_.known() ? std::optional(predicted) : std::nullopt);
+  return {map, last_, now, seconds, predicted, gate};
+}
+
+std::optional<MatchedPose> Tracker::follow(const FrameStep& step, TraceSink* trace) {
+  std::optional<FirstPose> first = last_frame_matcher_.match(step, trace);
+  std::optional<MatchedPose> found;
+  if (first) {
+    const Span span(trace, "match_local_map");
+    found = local_map_matcher_.refine(step.map, step.now, std::move(first->found),
+                                      step.last.state().pose.keyframe, options_.local_search_radius_px);
+  }
+  if (found && !verifier_.follows(step, local_map_matcher_.local_map(), found->pose, first->guessed))
+    found.reset();
+  if (!found || found->pose.inliers < options_.few_inliers) {
+    const Span span(trace, "align_surfaces");
+    found = surfaces_.align(step, found);
+  }
+  return found;
+}
+
+std::optional<Relocalisation> Tracker::relocalise(const KnownMaps& known, const KnownMap* last_in,
+                                                  const FrameState& now, TraceSink* trace) {
+  const Span span(trace, "relocalise");
+  return relocaliser_.search(known, last_in, last_, now);
 }
 
 // The request will become the first keyframe of a map, and this frame hangs on it.
-TrackedFrame Tracker::start() {
-  now_.pose = {};
-  lost_ = false;
-  searching_since_s_.reset();
+TrackedFrame Tracker::start(FrameState& now) {
+  loss_.measured(now.timestamp_s);
   motion_.forget();
   sightings_.clear();
-  last_measured_s_ = now_.timestamp_s;
-  unmeasured_frames_ = 0;
-  TrackedFrame result = report(TrackStatus::initialised, Se3{});
-  result.matches =
-      static_cast<int>(std::count_if(now_.features->features().begin(), now_.features->features().end(),
-                                     [](const Feature& f) { return f.has_depth(); }));
-  result.keyframe_request = make_request(now_.pose, true);
-  last_ = now_;
+  TrackedFrame result = report(now, TrackStatus::initialised, Se3{});
+  result.matches = now.features_with_depth();
+  result.keyframe_request = keyframes_.request(now, true, {});
+  last_.set(std::move(now));
   return result;
 }
 
-// A camera in a hand or on a robot cannot go faster than so much, nor change its velocity at once: where the motion
-// is known, a pose far from the prediction is a place that looks alike.
-bool Tracker::believable(const Se3& world_from_now, double seconds) const {
-  if (!world_from_now.finite()) return false;
-  constexpr double slack_m = 0.1, slack_rad = 0.15;
-  const Se3 step = last_world_->inverse() * world_from_now;
-  if (step.translation().norm() > options_.max_speed_m_per_s * seconds + slack_m ||
-      rotation_angle(step.rotation()) > options_.max_turn_rad_per_s * seconds + slack_rad) {
-    return false;
-  }
-  if (lost_ || !motion_.known()) return true;
-  const Se3 surprise = predicted_.inverse() * world_from_now;
-  return surprise.translation().norm() <= options_.max_velocity_change_m_per_s * seconds + slack_m &&
-         rotation_angle(surprise.rotation()) <= options_.max_turn_change_rad_per_s * seconds + slack_rad;
+// The pose was measured from the last frame on.
+TrackedFrame Tracker::go_on(const FrameStep& step, const MatchedPose& found, FrameState& now, int backlog) {
+  const FramePose& pose = found.pose;
+  anchor(step.map, found, step.last.state().pose.keyframe, now);
+  // What only the prediction held is passed on as weakly as it was known.
+  now.tracked_link =
+      link_to_anchor(now, pose.information + motion_prior(pose.world_from_camera, step.seconds).information,
+                     options_.few_inliers);
+  motion_.update(step.last.world_from_camera(), pose.world_from_camera, step.seconds, pose.measured);
+  return answer(step.map, found, pose.degenerate ? TrackStatus::coasting : TrackStatus::ok, false, now,
+                backlog);
+}
+
+// Found again after a loss. In a dormant map a keyframe is asked for in any case: it is what makes that map the active one.
+TrackedFrame Tracker::resume(const Map& map, const MatchedPose& found, bool dormant, FrameState& now,
+                             int backlog) {
+  anchor(map, found, local_map_matcher_.local_map().reference(), now);
+  now.tracked_link = link_to_anchor(now, found.pose.information, options_.few_inliers);
+  motion_.forget();
+  return answer(map, found, TrackStatus::relocalised, dormant, now, backlog);
+}
+
+// The last measured frame stays the one to match against; only the prediction moves on.
+TrackedFrame Tracker::coast(const FrameStep& step, FrameState& now) const {
+  const KeyframeId anchor = step.map.reanchor(step.last.state().pose)->keyframe;
+  now.pose = {anchor, step.map.keyframes().find(anchor)->world_from_camera.inverse() * step.predicted};
+  return report(now, TrackStatus::coasting, step.predicted);
+}
+
+TrackedFrame Tracker::stay_lost(FrameState& now) {
+  loss_.lose();
+  motion_.forget();
+  if (enough_to_start(now) && loss_.searched_in_vain(now.timestamp_s)) return start(now);
+  return report(now, TrackStatus::lost, Se3{});
+}
+
+// `near`: the keyframe to hang on where none held the pose.
+void Tracker::anchor(const Map& map, const MatchedPose& found, KeyframeId near, FrameState& now) {
+  sightings_.count(found.matches, local_map_matcher_.expected(), options_.min_inliers);
+  anchor_frame(map, choose_anchor(local_map_matcher_.local_map(), found, near), found, now);
+}
+
+TrackedFrame Tracker::answer(const Map& map, const MatchedPose& found, TrackStatus status, bool always_keep,
+                             FrameState& now, int backlog) {
+  const Se3& world_from_camera = found.pose.world_from_camera;
+  loss_.measured(now.timestamp_s);
+  TrackedFrame result = report(now, status, world_from_camera);
+  result.matches = found.pose.inliers;
+  if (always_keep || keyframes_.wanted(map, now, world_from_camera, backlog))
+    result.keyframe_request = keyframes_.request(now, false, sightings_.take());
+  last_.set(std::move(now));
+  return result;
 }
 
 }  // namespace vsgraphs

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/base/check.h"
 #include "core/base/rng.h"
@@ -49,7 +50,7 @@ class TrackerTest : public ::testing::Test {
     frame.timestamp_s = timestamp_s;
     frame.grey = grey;
     frame.depth.metres = depth;
-    TrackedFrame result = tracker_.track(frame, known(), 0, nullptr);
+    TrackedFrame result = tracker_->track(frame, known(), 0, nullptr);
     if (result.keyframe_request) {
       KeyframeId id;
       apply(mapper_.insert(*result.keyframe_request, snapshot_, id, nullptr));
@@ -87,7 +88,7 @@ class TrackerTest : public ::testing::Test {
   std::vector<KnownMap> dormant_;
   OrbOptions orb_;
   LocalMapper mapper_{LocalMapperOptions{}, small_camera(), orb_.pyramid()};
-  Tracker tracker_{TrackerOptions{}, orb_, small_camera(), 1};
+  std::optional<Tracker> tracker_{std::in_place, TrackerOptions{}, orb_, small_camera(), 1};
   std::int64_t next_index_ = 0;
 };
 
@@ -154,7 +155,7 @@ TEST_F(TrackerTest, APlaceThatLooksAlikeButHasNoWallThereIsNotRecognised) {
     places_ = PlaceIndex{};
     TrackerOptions options;
     if (trusting) options.recovery.max_seen_through_share = 1;
-    tracker_ = Tracker(options, orb_, small_camera(), 1);
+    tracker_.emplace(options, orb_, small_camera(), 1);
     slide(15);
     for (int i = 15; i < 35; ++i) track_dark(i * frame_s);
     const ImageView<std::uint8_t> wall = wall_.view();
@@ -184,7 +185,7 @@ TEST_F(TrackerTest, EnoughMatchesStandWhereSurfacesContradict) {
     next_index_ = 0;
     TrackerOptions options;
     options.enough_inliers = enough_inliers;
-    tracker_ = Tracker(options, orb_, small_camera(), 1);
+    tracker_.emplace(options, orb_, small_camera(), 1);
     depth_ = Image<float>(width, height, static_cast<float>(wall_m));
     for (int i = 0; i < 15; ++i) ASSERT_EQ(track(i * frame_s, 3 * i).status == TrackStatus::ok, i > 0);
     Image<std::uint8_t> poster(width, height, 128);
