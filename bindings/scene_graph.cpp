@@ -162,6 +162,9 @@ void add_structure(const FoundStructure& structure, nb::dict& graph) {
   graph["floors"] = floors;
   graph["doors"] = doors;
   graph["places"] = places;
+  nb::list kinds;
+  for (const std::string& kind : structure.element_kinds) kinds.append(kind);
+  graph["element_kinds"] = kinds;
   graph["elements"] = elements;
 }
 

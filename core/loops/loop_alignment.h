@@ -27,13 +27,15 @@ struct LoopAlignmentOptions {
 
 template <typename Visitor>
 void describe(LoopAlignmentOptions& o, Visitor& field) {
-  field("min_aligned", o.min_aligned, 10, 500, "matches by look that a loop's first alignment must explain");
-  field("min_inliers", o.min_inliers, 15, 500, "landmarks of the place that the keyframe must see there");
+  field("min_aligned", o.min_aligned, 10, 500,
+        "least number of matches by descriptor that a loop's first alignment must explain");
+  field("min_inliers", o.min_inliers, 15, 500,
+        "least number of landmarks at the other end of a loop that the keyframe must observe");
   field("min_neighbour_inliers", o.min_neighbour_inliers, 10, 500,
-        "landmarks of the place that a neighbour must see to support the loop");
-  field("supporters", o.supporters, 0, 5, "neighbours of the keyframe that must support the loop");
+        "least number of landmarks at the other end of a loop that a neighbour must observe to confirm it");
+  field("supporters", o.supporters, 0, 5, "number of neighbours of the keyframe that must confirm a loop");
   field("strong_inliers", o.strong_inliers, 15, 5000,
-        "a keyframe that sees as many landmarks of the place needs one supporter less");
+        "a keyframe that observes this many landmarks at the other end needs one confirming neighbour less");
 }
 
 // A keyframe and those around it: the one its tracked link ties it to, then those that share landmarks, most first.

@@ -94,10 +94,14 @@ bool is_sane(const Place& place) {
   return within(place.position, most_metres) && within(place.clearance_m, most_metres);
 }
 
+bool is_kind(const std::string& name) {
+  constexpr std::size_t longest = 64;
+  return !name.empty() && name.size() <= longest;
+}
+
 bool is_sane(const FoundElement& element) {
-  constexpr std::size_t longest_kind = 64;
-  return !element.kind.empty() && element.kind.size() <= longest_kind &&
-         within(element.centre, most_metres) && is_unit(element.along) && within(element.size_m, most_metres);
+  return is_kind(element.kind) && within(element.centre, most_metres) && is_unit(element.along) &&
+         within(element.size_m, most_metres);
 }
 
 template <typename Values>
@@ -114,7 +118,9 @@ Wrong wrong_with_structure(const FoundStructure& structure) {
   if (!all_sane(structure.rooms)) return "a room of no shape";
   if (!all_sane(structure.doors)) return "a door of no size";
   if (!all_sane(structure.floors)) return "a floor of no shape";
-  if (!all_sane(structure.elements)) return "an element of no size";
+  if (!all_sane(structure.elements) ||
+      !std::all_of(structure.element_kinds.begin(), structure.element_kinds.end(), is_kind))
+    return "an element of no size";
   return all_sane(structure.places) ? nullptr : "a place that is nowhere";
 }
 

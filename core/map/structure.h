@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/fields.h"
@@ -98,15 +99,16 @@ struct FoundStructure {
   // Where the vertices of the factor graph stand, world: of each room, of each floor. A room's is the mean of its walls'
   // centroids (the paper's room centroid), which furniture may pull off the middle of its polygon.
   std::vector<Eigen::Vector3d> room_nodes, floor_nodes;
-  std::vector<FoundElement> elements;  // by kind
-  ElementNumber next_element = 0;      // the first number never given to an element
+  std::vector<std::string> element_kinds;  // that were sought; of others nothing is known
+  std::vector<FoundElement> elements;      // by kind
+  ElementNumber next_element = 0;          // the first number never given to an element
 };
 template <FieldsOf<FoundStructure> T>
 void visit_fields(T& v, auto& field) {
   auto& [sought, rooms, doors, floors, places, next_number, level_from_world, room_nodes, floor_nodes,
-         elements, next_element] = v;
+         element_kinds, elements, next_element] = v;
   field(sought, rooms, doors, floors, places, next_number, level_from_world, room_nodes, floor_nodes);
-  field.since(4, elements, next_element);
+  field.since(4, element_kinds, elements, next_element);
 }
 
 }  // namespace vsgraphs

@@ -70,6 +70,7 @@ inline FoundStructure some_structure(PlaneId wall, PlaneId ground) {
   element.size_m = {1, 0.1, 2};
   element.planes = {wall};
   element.rooms = {4};
+  structure.element_kinds = {"shelf", "fountain"};
   structure.elements = {element};
   structure.next_element = 3;
   structure.level_from_world = Se3::exp((Vector6d() << 1, 2, 3, 0.1, 0.2, 0.3).finished());

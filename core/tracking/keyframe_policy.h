@@ -22,18 +22,20 @@ void describe(KeyframePolicyOptions& o, Visitor& field) {
   field("min_tracked_share", o.min_tracked_share, 0.1, 1.0,
         "a keyframe is made when less than this share of the reference keyframe's landmarks is tracked");
   field("min_translation_m", o.min_translation_m, 0.0, 1.0,
-        "no keyframe nearer to the last one than this, unless turned by min_rotation_rad");
+        "least distance between two keyframes, in metres, unless turned by min_rotation_rad");
   field("min_rotation_rad", o.min_rotation_rad, 0.0, 1.0,
-        "no keyframe turned less than this from the last one, unless moved by min_translation_m");
+        "least angle between two keyframes, in radians, unless moved by min_translation_m");
   field("surface_translation_m", o.surface_translation_m, 0.0, 5.0,
-        "where surfaces hold the pose instead of landmarks: distance between keyframes");
+        "distance between keyframes, in metres, where surfaces hold the pose instead of landmarks");
   field("surface_rotation_rad", o.surface_rotation_rad, 0.0, 3.2,
-        "where surfaces hold the pose instead of landmarks: turn between keyframes");
+        "angle between keyframes, in radians, where surfaces hold the pose instead of landmarks");
   field("max_interval_s", o.max_interval_s, 0.1, 60.0,
-        "a moving camera makes a keyframe at least this often");
+        "longest time between two keyframes of a moving camera, in seconds");
   field("few_close_points", o.few_close_points, 0, 1000,
-        "fewer tracked points with depth than this count as too few, if many new ones are to be had");
-  field("many_new_close_points", o.many_new_close_points, 0, 1000, "how many new points with depth are many");
+        "a keyframe is made when fewer points with depth than this are tracked and many_new_close_points are "
+        "new");
+  field("many_new_close_points", o.many_new_close_points, 0, 1000,
+        "number of new points with depth that makes a keyframe when few_close_points are tracked");
 }
 
 struct KeyframeEvidence {

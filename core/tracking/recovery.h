@@ -23,18 +23,20 @@ struct RecoveryOptions {
 
 template <typename Visitor>
 void describe(RecoveryOptions& o, Visitor& field) {
-  field("min_inliers", o.min_inliers, 10, 500, "matches a pose found after a large step must explain");
+  field("min_inliers", o.min_inliers, 10, 500,
+        "least number of matches that a pose found after a large step must explain");
   field("min_aligned", o.min_aligned, 10, 500,
-        "matches by look with one keyframe that a pose after a loss must explain, to be searched around");
+        "least number of matches by descriptor with one keyframe that a pose after tracking was lost must "
+        "explain");
   field("min_relocalisation_inliers", o.min_relocalisation_inliers, 10, 500,
-        "landmarks that must be found around a pose near the last one, after a loss");
+        "least number of landmarks found around a pose near the last one, after tracking was lost");
   field("min_place_inliers", o.min_place_inliers, 10, 1000,
-        "landmarks that must be found around a pose recognised by its look alone: a poster is not enough; "
-        "twice as many in "
-        "a map the camera was not in before");
-  field("max_candidates", o.max_candidates, 1, 50, "keyframes of a map tried per frame after a loss");
+        "least number of landmarks found around a pose that appearance alone recognised; twice as many in "
+        "another map");
+  field("max_candidates", o.max_candidates, 1, 50,
+        "number of keyframes of each map that a lost frame is compared with");
   field("max_seen_through_share", o.max_seen_through_share, 0.0, 1.0,
-        "share of the map's surfaces in view that a frame may look through where it was found after a loss");
+        "largest share of the map's visible surfaces that a recognised frame may look through");
 }
 
 class Recovery {

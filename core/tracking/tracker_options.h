@@ -29,29 +29,34 @@ struct TrackerOptions {
 template <typename Visitor>
 void describe(TrackerOptions& o, Visitor& field) {
   field("search_radius_px", o.search_radius_px, 2.0, 200.0,
-        "search around predicted points of the last frame");
-  field("local_search_radius_px", o.local_search_radius_px, 1.0, 50.0, "search around projected landmarks");
-  field("local_keyframes", o.local_keyframes, 2, 200, "keyframes whose landmarks a frame is matched against");
-  field("min_inliers", o.min_inliers, 6, 200, "fewer inlier matches than this are no pose");
+        "search radius around predicted points of the last frame, in pixels");
+  field("local_search_radius_px", o.local_search_radius_px, 1.0, 50.0,
+        "search radius around projected landmarks of the local map, in pixels");
+  field("local_keyframes", o.local_keyframes, 2, 200,
+        "number of keyframes whose landmarks a frame is matched against");
+  field("min_inliers", o.min_inliers, 6, 200, "least number of inlier matches that make a pose");
   field("few_inliers", o.few_inliers, 0, 1000,
-        "with fewer inlier matches than this, depth is aligned with a keyframe's as well");
+        "with fewer inlier matches than this, the frame's depth is aligned with a keyframe's as well");
   field("enough_inliers", o.enough_inliers, 6, 1000,
-        "a pose with this many inlier matches stands even where depth alignment fails or contradicts it");
+        "a pose with this many inlier matches is kept even where depth alignment fails or contradicts it");
   field("min_features_to_start", o.min_features_to_start, 20, 5000,
-        "features with depth needed to start a map");
+        "least number of features with depth that start a map");
   field("max_speed_m_per_s", o.max_speed_m_per_s, 0.1, 100.0,
-        "a pose that would need more speed is rejected");
+        "a pose that implies a higher speed than this, in metres per second, is rejected");
   field("max_turn_rad_per_s", o.max_turn_rad_per_s, 0.1, 100.0,
-        "a pose that would need a faster turn is rejected");
+        "a pose that implies a faster turn than this, in radians per second, is rejected");
   field("max_velocity_change_m_per_s", o.max_velocity_change_m_per_s, 0.1, 100.0,
-        "a pose that would need a larger change of velocity from one frame to the next is rejected");
+        "a pose that implies a larger change of velocity between two frames, in metres per second, is "
+        "rejected");
   field("max_turn_change_rad_per_s", o.max_turn_change_rad_per_s, 0.1, 100.0,
-        "a pose that would need a larger change of turn rate from one frame to the next is rejected");
-  field("coast_s", o.coast_s, 0.0, 5.0, "how long the motion model is believed when nothing is measured");
+        "a pose that implies a larger change of turn rate between two frames, in radians per second, is "
+        "rejected");
+  field("coast_s", o.coast_s, 0.0, 5.0,
+        "time for which the predicted pose is used when nothing is measured, in seconds");
   field("coast_frames", o.coast_frames, 0, 100,
-        "frames for which it is believed at least, however slow they come");
+        "least number of frames for which the predicted pose is used when nothing is measured");
   field("new_map_after_s", o.new_map_after_s, 0.0, 3600.0,
-        "a lost camera that sees enough and recognises nothing for so long starts a new map");
+        "a lost camera that sees enough and recognises nothing for this long, in seconds, starts a new map");
 }
 
 }  // namespace vsgraphs

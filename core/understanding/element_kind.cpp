@@ -125,6 +125,21 @@ void number(const ElementKind& kind, std::span<const FoundElement> previous, Ele
 
 }  // namespace
 
+std::vector<ElementKind> sought_kinds(std::span<const ElementKind> kinds, const Map& map,
+                                      const SurfaceKeeper& surfaces) {
+  bool labelled = false;
+  map.planes().for_each([&](PlaneId id, const MappedPlane&) {
+    const KnownSurface* known = surfaces.find(id);
+    labelled |=
+        known && (!known->class_votes().empty() || std::any_of(known->votes().begin(), known->votes().end(),
+                                                               [](float weight) { return weight > 0; }));
+  });
+  std::vector<ElementKind> sought;
+  for (const ElementKind& kind : kinds)
+    if (labelled || !kind.by_labels) sought.push_back(kind);
+  return sought;
+}
+
 std::vector<FoundElement> find_elements(std::span<const ElementKind> kinds, const ElementSights& sights,
                                         std::span<const FoundElement> previous, ElementNumber& next_number) {
   std::vector<FoundElement> all;

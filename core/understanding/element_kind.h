@@ -24,11 +24,16 @@ struct ElementSights {
 struct ElementKind {
   const char* name;      // singular, as in files: "shelf"
   double same_within_m;  // boxes with a smaller gap are one element, within a pass and from one to the next
+  bool by_labels;        // known by what a segmenter says: not sought where none has said anything
   // Pieces of such elements; their kind and number are set, and pieces of one thing put together, by find_elements().
   std::vector<FoundElement> (*find)(const ElementSights& sights);
 };
 
 std::span<const ElementKind> element_kinds();
+
+// Those of the kinds that can be sought in what was seen.
+std::vector<ElementKind> sought_kinds(std::span<const ElementKind> kinds, const Map& map,
+                                      const SurfaceKeeper& surfaces);
 
 // All elements of these kinds, in their order and ascending by number. `previous`: those of the pass before, whose numbers are kept;
 // `next_number`: the first that was never given, moved on. Cost: the planes' extents of the pieces, some ms for a building.

@@ -31,7 +31,7 @@ class Elements : public ::testing::Test {
     return element;
   }
   std::vector<FoundElement> find() {
-    const std::array<ElementKind, 1> kinds{{{"shelf", 0.2, &shelves}}};
+    const std::array<ElementKind, 1> kinds{{{"shelf", 0.2, false, &shelves}}};
     previous_ = find_elements(kinds, {map_, surfaces_, structure_}, previous_, next_);
     return previous_;
   }

@@ -3,6 +3,9 @@
 
 namespace vsgraphs {
 
-std::span<const ElementKind> element_kinds() { return {}; }
+std::span<const ElementKind> element_kinds() {
+  static const std::vector<ElementKind> kinds{};
+  return kinds;
+}
 
 }  // namespace vsgraphs

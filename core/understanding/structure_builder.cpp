@@ -71,8 +71,10 @@ MapEdit StructureBuilder::propose(const Snapshot& snapshot, const SpaceKeeper& s
   found->level_from_world = level_from_world;
   place_nodes(map, surfaces, *found);
   found->next_element = map.structure().next_element;
+  const std::vector<ElementKind> kinds = sought_kinds(element_kinds(), map, surfaces);
+  for (const ElementKind& kind : kinds) found->element_kinds.emplace_back(kind.name);
   found->elements =
-      find_elements(element_kinds(), {map, surfaces, *found}, map.structure().elements, found->next_element);
+      find_elements(kinds, {map, surfaces, *found}, map.structure().elements, found->next_element);
   draft.record(SetStructure{std::move(found)});
   return draft.take();
 }

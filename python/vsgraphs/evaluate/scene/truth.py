@@ -174,11 +174,11 @@ def _elements(document: Mapping[str, Any], required: Mapping[str, bool]) -> dict
     Rows: id, center, room (in which it is), and counted, observed as of walls; true where they are not told.
     """
     found: dict[str, list[TrueElement]] = {}
-    for name in (kind.truth for kind in KINDS if kind.truth):
-        listed = document.get(name)
-        if listed is None or not all("center" in row for row in listed):
+    for kind in KINDS:
+        listed = kind.true_rows(document)
+        if kind.truth is None or listed is None or not all("center" in row for row in listed):
             continue
-        found[name] = [
+        found[kind.truth] = [
             TrueElement(
                 id=str(row["id"]),
                 center=point_of(row["center"]),

@@ -72,7 +72,9 @@ class ElementKind(Kind[ElementNode]):
 
     def rows(self, raw: Row) -> list[Row] | None:
         elements = raw.get("elements")
-        return None if elements is None else [row for row in elements if row["kind"] == self.name]
+        if elements is None or self.name not in raw.get("element_kinds", [self.name]):
+            return None
+        return [row for row in elements if row["kind"] == self.name]
 
     def from_map(self, row: Row, mover: Mover) -> ElementNode:
         what = f"{self.name} {row['id']}"

@@ -70,6 +70,11 @@ class Kind(ABC, Generic[NodeT]):
     def from_map(self, row: Row, mover: Mover) -> NodeT | None:
         """A raw row as a node in the graph's frame; None: to be left out. Raises InputError."""
 
+    def true_rows(self, document: Mapping[str, Any]) -> list[Mapping[str, Any]] | None:
+        """What scene_gt.json lists of it: id, center, room; None: nothing that can be scored against."""
+        rows: list[Mapping[str, Any]] | None = document.get(self.truth) if self.truth else None
+        return rows
+
     # ---- what it has to do with others
 
     def references(self, node: NodeT) -> Iterator[tuple[str, int | None]]:
