@@ -1,10 +1,13 @@
 // The kinds of elements there are; a line each.
+#include "core/understanding/ceiling.h"
 #include "core/understanding/element_kind.h"
 
 namespace vsgraphs {
 
 std::span<const ElementKind> element_kinds() {
-  static const std::vector<ElementKind> kinds{};
+  static const std::vector<ElementKind> kinds{
+      ceiling_kind(),
+  };
   return kinds;
 }
 

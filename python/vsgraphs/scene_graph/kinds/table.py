@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vsgraphs.scene_graph.edges import Relation
+from vsgraphs.scene_graph.kinds.ceiling import CeilingKind
 from vsgraphs.scene_graph.kinds.door import DoorKind
 from vsgraphs.scene_graph.kinds.floor import FloorKind
 from vsgraphs.scene_graph.kinds.keyframe import KeyframeKind
@@ -21,6 +22,7 @@ KINDS: list[Kind[Any]] = [
     RoomKind(),
     FloorKind(),
     DoorKind(),
+    CeilingKind(),
     MarkerKind(),
     PlaceKind(),
 ]
