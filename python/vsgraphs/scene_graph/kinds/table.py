@@ -14,6 +14,7 @@ from vsgraphs.scene_graph.kinds.marker import MarkerKind
 from vsgraphs.scene_graph.kinds.place import PlaceKind
 from vsgraphs.scene_graph.kinds.plane import PlaneKind
 from vsgraphs.scene_graph.kinds.room import RoomKind
+from vsgraphs.scene_graph.kinds.window import WindowKind
 
 # In the order of the sections of scene_graph.json. Whatever is made of a graph loops over this.
 KINDS: list[Kind[Any]] = [
@@ -23,6 +24,7 @@ KINDS: list[Kind[Any]] = [
     FloorKind(),
     DoorKind(),
     CeilingKind(),
+    WindowKind(),
     MarkerKind(),
     PlaceKind(),
 ]
