@@ -160,6 +160,26 @@ nb::dict mover_truth(const Scene& scene, std::size_t index) {
   return d;
 }
 
+nb::dict pillar_truth(const BoxPlan& box, const RoomPlan& room, std::size_t index) {
+  nb::dict d;
+  d["id"] = index;
+  d["room"] = room.id;
+  d["center"] = numbers({box.at.x(), box.at.y(), room.z_floor + box.z + 0.5 * box.size.z()});
+  d["size"] = numbers({box.size.x(), box.size.y(), box.size.z()});
+  return d;
+}
+
+// Only where there are any.
+void add_pillars(const Scene& scene, nb::dict& truth) {
+  nb::list pillars;
+  for (const BoxPlan& box : scene.plan.boxes) {
+    if (box.kind != "pillar") continue;
+    for (const RoomPlan& room : scene.plan.rooms)
+      if (room.id == box.room) pillars.append(pillar_truth(box, room, pillars.size()));
+  }
+  if (pillars.size() > 0) truth["pillars"] = pillars;
+}
+
 nb::dict marker_truth(const Scene& scene, std::size_t index) {
   const MarkerGeometry& marker = scene.markers[index];
   const Eigen::Matrix4d pose = marker.world_from_marker.matrix();
@@ -226,6 +246,7 @@ nb::dict scene_truth(const Scene& scene, const ObservationCounter& seen) {
     d["markers"] = listed(scene.markers.size(), [&](std::size_t i) { return marker_truth(scene, i); });
   if (!scene.wall_mirrors.empty())
     d["mirrors"] = listed(scene.wall_mirrors.size(), [&](std::size_t i) { return mirror_truth(scene, i); });
+  add_pillars(scene, d);
   if (!scene.partitions.empty())
     d["partitions"] =
         listed(scene.partitions.size(), [&](std::size_t i) { return partition_truth(scene, i); });

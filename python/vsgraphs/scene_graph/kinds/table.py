@@ -11,6 +11,7 @@ from vsgraphs.scene_graph.kinds.floor import FloorKind
 from vsgraphs.scene_graph.kinds.keyframe import KeyframeKind
 from vsgraphs.scene_graph.kinds.kind import Kind
 from vsgraphs.scene_graph.kinds.marker import MarkerKind
+from vsgraphs.scene_graph.kinds.pillar import PillarKind
 from vsgraphs.scene_graph.kinds.place import PlaceKind
 from vsgraphs.scene_graph.kinds.plane import PlaneKind
 from vsgraphs.scene_graph.kinds.room import RoomKind
@@ -25,6 +26,7 @@ KINDS: list[Kind[Any]] = [
     DoorKind(),
     CeilingKind(),
     WindowKind(),
+    PillarKind(),
     MarkerKind(),
     PlaceKind(),
 ]
