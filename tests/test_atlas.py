@@ -23,7 +23,7 @@ from vsgraphs.trajectory import read_tum_trajectory
 COUNTS = ("keyframes", "landmarks", "planes", "rooms", "floors", "doors", "markers", "maps")
 
 
-NEWEST = 4  # version of the atlas format
+NEWEST = 5  # version of the atlas format
 
 
 @pytest.fixture(scope="module")

@@ -24,6 +24,6 @@ std::vector<FoundElement> find_ceilings(const ElementSights& sights) {
 
 }  // namespace
 
-ElementKind ceiling_kind() { return {"ceiling", 0.15, false, &find_ceilings}; }
+ElementKind ceiling_kind() { return {"ceiling", 0.25, false, &find_ceilings}; }
 
 }  // namespace vsgraphs

@@ -19,6 +19,6 @@ std::vector<FoundElement> find_windows(const ElementSights& sights) {
 }  // namespace
 
 // Two sashes of one window are nearer; two windows beside each other have wall between them.
-ElementKind window_kind() { return {"window", 0.15, true, &find_windows}; }
+ElementKind window_kind() { return {"window", 0.25, true, &find_windows}; }
 
 }  // namespace vsgraphs

@@ -99,7 +99,7 @@ TEST_F(ClassesTest, WhatMakesNoSenseIsNamed) {
   EXPECT_EQ(complaint_of({"wall", std::string(128, 'x'), "T\xc3\xbcr"}), "");
   EXPECT_THAT(complaint_of({}), HasSubstr("classes without class_names"));
   EXPECT_THAT(complaint_of({"wall", ""}), HasSubstr("the name of class 2 must be a text of 1 to 128 bytes"));
-  for (const std::string bad : {std::string(129, 'x'), std::string("a\nb"), std::string("\xff")})
+  for (const std::string& bad : {std::string(129, 'x'), std::string("a\nb"), std::string("\xff")})
     EXPECT_THAT(complaint_of({bad}), HasSubstr("the name of class 1 must be"));
   EXPECT_THAT(complaint_of({"wall", "chair", "wall"}), HasSubstr("class name 'wall' is there twice"));
   EXPECT_THAT(complaint_of({"costarring", "liquid"}),
