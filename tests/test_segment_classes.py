@@ -14,7 +14,7 @@ from PIL import Image
 from tiny_models import colour_model, constant_model, write_sidecar
 
 import vsgraphs
-from vsgraphs.errors import InputError
+from vsgraphs.errors import InputError, RunError
 from vsgraphs.segment import KeyframeSegmentation, Segmentation, attach, make_segmenter
 from vsgraphs.segment.classes import ClassTable
 from vsgraphs.segment.label_folder import LabelFolder
@@ -240,7 +240,7 @@ def test_a_replay_follows_the_labels(tmp_path: Path) -> None:
     assert "labels " in Path(schedule).read_text()
     again = Wall("wall", "picture").run(replay=schedule)
     assert votes_in(again.snapshot()) == votes_in(told.snapshot())
-    with pytest.raises(vsgraphs.RunError, match="departs from the schedule"):
+    with pytest.raises(RunError, match="departs from the schedule"):
         Wall("wall", "poster").run(replay=schedule)
 
 
