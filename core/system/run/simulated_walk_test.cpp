@@ -8,11 +8,11 @@
 #include <set>
 #include <stdexcept>
 
-#include "simulate/renderer.h"
-#include "simulate/test_plan.h"
 #include "core/system/maps/test_followers.h"
 #include "core/system/run/slam.h"
 #include "core/vision/grey.h"
+#include "simulate/renderer.h"
+#include "simulate/test_plan.h"
 
 namespace vsgraphs {
 namespace {
