@@ -1,4 +1,4 @@
-// Ceilings: level surfaces above the cameras that saw them, each with the rooms that it covers.
+// Ceilings: of each room where one was seen, over the room's outline.
 #pragma once
 
 #include "core/understanding/element_kind.h"

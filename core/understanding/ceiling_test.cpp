@@ -12,30 +12,22 @@ using ::testing::ElementsAre;
 
 const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
 
-TEST(Ceiling, IsALevelBoxWithTheRoomsBelow) {
+TEST(Ceiling, IsALevelBoxOverItsRoom) {
   test::SeenPlanes seen;
   seen.add_room(4, {0, 0}, {4, 3});
-  seen.add_room(7, {4.2, 0}, {9, 3});
-  const PlaneId wide = seen.see(SurfaceRole::ceiling, {2, 1.5, 2.6}, 1.5 * y, 2 * x);
-  seen.structure.rooms[1].ceiling = wide;
-  seen.see(SurfaceRole::ground, {2, 1.5, 0}, 2 * x, 1.5 * y);
+  seen.add_room(7, {4.1, 0}, {9, 3});
+  seen.add_room(8, {9.1, 0}, {12, 3});
+  const PlaneId wide = seen.see(SurfaceRole::ceiling, {4.5, 1.5, 2.6}, 1.5 * y, 4.5 * x);
+  seen.structure.rooms[0].ceiling = seen.structure.rooms[1].ceiling = wide;
   const auto found = seen.find(ceiling_kind());
-  ASSERT_EQ(found.size(), 1U);
+  ASSERT_EQ(found.size(), 2U) << "nobody saw the third room's";
   EXPECT_EQ(found[0].kind, "ceiling");
-  EXPECT_NEAR(found[0].centre.z(), 2.6, 0.01);
-  EXPECT_NEAR(found[0].size_m.z(), 0, 0.01);
-  EXPECT_NEAR(std::max(found[0].size_m.x(), found[0].size_m.y()), 4, 0.2);
-  EXPECT_NEAR(std::min(found[0].size_m.x(), found[0].size_m.y()), 3, 0.2);
-  EXPECT_THAT(found[0].rooms, ElementsAre(4, 7));
-}
-
-TEST(Ceiling, PiecesOfOneAreOne) {
-  test::SeenPlanes seen;
-  seen.see(SurfaceRole::ceiling, {1, 1, 2.6}, y, x);
-  seen.see(SurfaceRole::ceiling, {3.05, 1, 2.6}, y, x);
-  seen.see(SurfaceRole::ceiling, {9, 1, 2.6}, y, x);
-  seen.see(SurfaceRole::ceiling, {20, 1, 2.6}, 0.2 * y, 0.2 * x);
-  EXPECT_EQ(seen.find(ceiling_kind()).size(), 2U) << "the smallest is none";
+  EXPECT_TRUE(found[0].centre.isApprox(Eigen::Vector3d(2, 1.5, 2.6)));
+  EXPECT_TRUE(found[0].size_m.isApprox(Eigen::Vector3d(4, 3, 0)));
+  EXPECT_NEAR(std::abs(found[0].along.x()), 1, 1e-9);
+  EXPECT_THAT(found[0].planes, ElementsAre(wide));
+  EXPECT_THAT(found[0].rooms, ElementsAre(4));
+  EXPECT_THAT(found[1].rooms, ElementsAre(7));
 }
 
 }  // namespace

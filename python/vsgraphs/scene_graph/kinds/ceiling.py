@@ -1,4 +1,4 @@
-"""Ceilings: level surfaces above, each with the rooms that it covers."""
+"""Ceilings of rooms."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from vsgraphs.scene_graph.kinds.kind import SparkPlace
 
 
 class CeilingKind(ElementKind):
-    """Scored against the rooms' ceilings, whose middles a part that was seen may be far from."""
+    """Over the outline of each room where one was seen, and scored against the true rooms' ceilings."""
 
     name, section = "ceiling", "ceilings"
     colour = CLASS_COLOURS["ceiling"]
     spark = SparkPlace("objects", "C", ("ceiling area",))
-    description = "A level surface above the rooms that it covers."
+    description = "The ceiling of a room, over its outline."
     in_plan = False
     truth = "ceilings"
-    within_m = 1.5
+    within_m = 1.0
 
     def true_rows(self, document: Mapping[str, Any]) -> list[Mapping[str, Any]] | None:
         """Of rooms with a flat ceiling: its middle."""
