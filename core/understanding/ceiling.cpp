@@ -1,7 +1,5 @@
 #include "core/understanding/ceiling.h"
 
-#include <limits>
-
 namespace vsgraphs {
 namespace {
 
@@ -21,20 +19,10 @@ Eigen::Vector3d direction_of(const Polygon2& outline) {
 // A plane may be the ceiling of several rooms: each has its own, over its outline.
 FoundElement ceiling_of(const FoundRoom& room) {
   FoundElement ceiling;
-  ceiling.along = direction_of(room.polygon);
-  const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(ceiling.along);
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Eigen::Vector2d low(far, far), high(-far, -far);
-  for (const Eigen::Vector2d& corner : room.polygon) {
-    const Eigen::Vector3d p(corner.x(), corner.y(), 0);
-    const Eigen::Vector2d laid(p.dot(ceiling.along), p.dot(across));
-    low = low.cwiseMin(laid);
-    high = high.cwiseMax(laid);
-  }
-  const Eigen::Vector2d middle = 0.5 * (low + high), size = high - low;
-  ceiling.size_m = {size.x(), size.y(), 0};
-  ceiling.centre = middle.x() * ceiling.along + middle.y() * across +
-                   (room.ground_m + *room.height_m) * Eigen::Vector3d::UnitZ();
+  std::vector<Eigen::Vector3d> corners;
+  for (const Eigen::Vector2d& corner : room.polygon)
+    corners.emplace_back(corner.x(), corner.y(), room.ground_m + *room.height_m);
+  enclose(corners, direction_of(room.polygon), ceiling);
   ceiling.planes = {room.ceiling};
   ceiling.rooms = {room.number};
   return ceiling;

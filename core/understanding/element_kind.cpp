@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <tuple>
 
@@ -22,7 +21,8 @@ struct Interval {
 
 Eigen::Vector3d across(const Eigen::Vector3d& along) { return Eigen::Vector3d::UnitZ().cross(along); }
 
-// Sets the box around the points, laid along `along`.
+}  // namespace
+
 void enclose(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& along, FoundElement& element) {
   Interval width, depth, height;
   for (const Eigen::Vector3d& p : points) {
@@ -36,16 +36,7 @@ void enclose(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& alo
       width.middle() * along + depth.middle() * across(along) + height.middle() * Eigen::Vector3d::UnitZ();
 }
 
-void enclose_tightly(std::span<const Eigen::Vector3d> points, FoundElement& element) {
-  constexpr int directions = 18;  // in a quarter turn
-  FoundElement best = element;
-  for (int i = 0; i < directions; ++i) {
-    const double angle = i * std::numbers::pi / (2 * directions);
-    enclose(points, {std::cos(angle), std::sin(angle), 0}, element);
-    if (i == 0 || element.size_m.x() * element.size_m.y() < best.size_m.x() * best.size_m.y()) best = element;
-  }
-  element = best;
-}
+namespace {
 
 std::vector<Eigen::Vector3d> corners_of(const FoundElement& element) {
   std::vector<Eigen::Vector3d> corners;
@@ -164,10 +155,8 @@ FoundElement element_of(const ElementSights& sights, PlaneId plane, double insid
       points.push_back(level.project(sights.structure.level_from_world * p));
   if (points.empty()) return element;
   const Eigen::Vector3d along = level.normal.cross(Eigen::Vector3d::UnitZ());
-  if (along.norm() > 0.7)
-    enclose(points, along.normalized(), element);
-  else
-    enclose_tightly(points, element);
+  if (along.norm() < 0.7) return element;
+  enclose(points, along.normalized(), element);
   const Eigen::Vector3d inside = element.centre + inside_m * level.normal;
   for (const FoundRoom& room : sights.structure.rooms) {
     const double above_m = inside.z() - room.ground_m;

@@ -40,8 +40,11 @@ std::vector<ElementKind> sought_kinds(std::span<const ElementKind> kinds, const 
 std::vector<FoundElement> find_elements(std::span<const ElementKind> kinds, const ElementSights& sights,
                                         std::span<const FoundElement> previous, ElementNumber& next_number);
 
-// An element of one plane: the box of where it was seen, levelled; `along`: the plane's horizontal direction, of a level plane the one
-// with the smallest box. Without size where nothing was seen. The rooms are those that `inside_m` in front of it lies in.
+// Sets the element's box to the one around the points, levelled, that lies along `along` (unit, horizontal).
+void enclose(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& along, FoundElement& element);
+
+// An element of one upright plane: the box of where it was seen, along the plane. Without size where nothing was seen, or the plane
+// is level. The rooms are those that `inside_m` in front of it lies in.
 FoundElement element_of(const ElementSights& sights, PlaneId plane, double inside_m);
 
 }  // namespace vsgraphs
